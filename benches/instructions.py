@@ -105,7 +105,7 @@ def in_chunk(number):
 
 # Calls: the method and the message of each number.
 CALLS = {
-    "CountPoints": ("CountPoints", lambda number: member(1, query(in_box(number)))),
+    "CountPoints": ("CountPoints", lambda number: query(in_box(number))),
     "FindNearest": (
         "FindNearest",
         lambda number: member(1, member(1, number * 40.0) + member(2, 3.0))

@@ -6,8 +6,8 @@ import { basename } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
-const here = (path) => fileURLToPath(new URL(path, import.meta.url));
-const target = process.env.CARGO_TARGET_DIR ?? here("../c/target");
+const here = (/** @type {string} */ path) => fileURLToPath(new URL(path, import.meta.url));
+const target = process.env.CARGO_TARGET_DIR ?? here("../target");
 const TARGET = "wasm32-unknown-unknown";
 
 /** Binaryen's wasm-opt: of the development dependency, else of the machine. */
@@ -16,15 +16,18 @@ function optimizer() {
     return existsSync(own) ? [process.execPath, own] : ["wasm-opt"];
 }
 
-/** Builds a crate as a module. Features of WebAssembly are those that it is compiled for. */
-function built(manifest, crate, module, features, more = []) {
+/**
+ * Builds a crate by its profile as a module. Features of WebAssembly are those that it is compiled for.
+ * @type {(manifest: string, crate: string, profile: string, module: string, features: string[], more?: string[]) => void}
+ */
+function built(manifest, crate, profile, module, features, more = []) {
     const flags = `${process.env.RUSTFLAGS ?? ""} -C target-feature=${features.map((name) => `+${name}`).join()}`.trim();
-    const how = ["--lib", "--profile", "wasm", "--target", TARGET, "--manifest-path", here(manifest)];
+    const how = ["--lib", "--profile", profile, "--target", TARGET, "--manifest-path", here(manifest)];
     execFileSync("cargo", ["build", "--locked", ...how], {
         stdio: "inherit",
         env: { ...process.env, RUSTFLAGS: flags, CARGO_TARGET_DIR: target },
     });
-    const from = `${target}/${TARGET}/wasm/${crate}.wasm`;
+    const from = `${target}/${TARGET}/${profile}/${crate}.wasm`;
     const known = ["nontrapping-float-to-int", "sign-ext", "mutable-globals", "multivalue", "reference-types"];
     const enabled = [...known, ...features.map((name) => name.replace("128", ""))].map((name) => `--enable-${name}`);
     const [program, ...first] = optimizer();
@@ -33,16 +36,16 @@ function built(manifest, crate, module, features, more = []) {
         execFileSync(program, options, { stdio: "inherit" });
         console.log(`${basename(module)}: wasm-opt ${statSync(from).size} to ${statSync(module).size} bytes`);
     } catch (error) {
-        if (error.code !== "ENOENT") throw error;
+        if (/** @type {NodeJS.ErrnoException} */ (error).code !== "ENOENT") throw error;
         throw new Error("wasm-opt is missing: run `npm install` here, which installs binaryen", { cause: error });
     }
 }
 
 mkdirSync(here("lib/tables"), { recursive: true });
 mkdirSync(here("lib/embedded"), { recursive: true });
-built("../c/Cargo.toml", "strew_c", here("lib/strew.wasm"), ["simd128", "bulk-memory"]);
+built("../c/Cargo.toml", "strew_c", "wasm", here("lib/strew.wasm"), ["simd128", "bulk-memory"]);
 // Without vectors it is smaller by 8 kB, and has the same bits; it only takes square roots by them.
-built("lite/Cargo.toml", "strew_lite", here("lib/lite.wasm"), ["bulk-memory"], ["--enable-simd"]);
+built("lite/Cargo.toml", "strew_lite", "lite", here("lib/lite.wasm"), ["bulk-memory"], ["--enable-simd"]);
 
 // The tables of this package, and all of them in a package of their own, each with a module that bundlers understand.
 const OWN = ["blue-5-sqrt3-over-2-m.strew", "blue-5-sqrt3-over-2-s.strew", "space-blue-5-sqrt3-over-2-r16.strew"];
@@ -64,8 +67,8 @@ for (const folder of ["../../crates/core/tables/", "../../crates/core/tables/joi
 }
 
 /** A module of files in base64 of gzip. */
-function embedded(module, files) {
-    const line = (file) => {
+function embedded(/** @type {string} */ module, /** @type {string[]} */ files) {
+    const line = (/** @type {string} */ file) => {
         const name = basename(file).replace(/\.\w+$/, "").replaceAll("-", "_");
         return `export const ${name} = "${gzipSync(readFileSync(here(file)), { level: 9 }).toString("base64")}";\n`;
     };

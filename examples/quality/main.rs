@@ -66,18 +66,22 @@ fn shipped(profile: &Profile) -> Result<Vec<Shipped>, Anything> {
         let number: Alpha = number.parse()?;
         for (size, radius) in SIZES {
             let file = file_name(profile.name, number, radius);
-            let path = Path::new("tables").join(&file);
-            if path.exists() {
+            let folders = ["crates/core/tables", "crates/catalog/tables"];
+            let paths = folders.map(|folder| Path::new(folder).join(&file));
+            if let Some(path) = paths.iter().find(|path| path.exists()) {
                 found.push(Shipped {
                     stem: file.trim_end_matches(".strew").to_owned(),
                     alpha,
                     size,
-                    table: read_table(&path)?,
+                    table: read_table(path)?,
                 });
             }
         }
     }
-    Ok(found)
+    match found.is_empty() {
+        true => Err(format!("there is no table of {}", profile.name).into()),
+        false => Ok(found),
+    }
 }
 
 /// The rows of a table: its smallest unseen twin, its first unseen window, and its served region.

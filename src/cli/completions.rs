@@ -111,7 +111,7 @@ fn words(parameter: &Parameter) -> Vec<String> {
         Shape::Strength { .. } => owned(&["off", "on"]),
         Shape::Choice(words) => owned(words),
         Shape::Format => {
-            let all = Encoding::every();
+            let all = Encoding::ALL.iter();
             all.map(|encoding| encoding.name().into()).collect()
         }
         _ if *parameter == ATTRIBUTES => attributes(),

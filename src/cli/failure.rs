@@ -1,7 +1,6 @@
 //! Why a command failed, in the words of a command line: flags instead of parameters, settings instead of a server.
 
 use anyhow::anyhow;
-use strew_encode::Encoding;
 use strew_error::{Error, Fault};
 use strew_forge::SettingError;
 use strew_query::{Parameter, patterns::PATTERN_PARAMETERS};
@@ -143,10 +142,6 @@ impl Source {
                 format!("an amount is missing: use one of {}", flags.join(", "))
             }
             (None, _) => format!("{name} is missing; allowed: {allowed}"),
-            (Some(value), "format") if Encoding::from_name(value).is_none() => {
-                let files = Encoding::names(Encoding::FILES);
-                format!("{name} {value}: {detail}; allowed: {allowed}, {files}")
-            }
             (Some(value), _) => format!("{name} {value}: {detail}; allowed: {allowed}"),
         }
     }

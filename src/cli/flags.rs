@@ -180,9 +180,7 @@ pub(super) const WHERE: &str = "Where";
 fn own_words(parameter: &Parameter) -> Option<(String, &'static str)> {
     let (about, default) = match (parameter.name, parameter.group) {
         ("format", _) => {
-            let formats = Encoding::names(Encoding::ALL);
-            let parquet = Encoding::Parquet.name();
-            let about = format!("The format of the output: {formats} or {parquet}.");
+            let about = format!("The format of the output: {}.", Encoding::names());
             return Some((about, "the ending of the output's name, else json"));
         }
         ("offsets", _) => (

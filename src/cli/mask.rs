@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use strew_catalog::Ready;
 use strew_forge::{figure, mask::Mask};
 use strew_query::chosen;
@@ -12,6 +13,7 @@ use super::{
     flags::{Flags, Tabled},
     output::{self, Output, must_not_be_terminal},
     pattern::encoded,
+    progress::Progress,
     refuse,
 };
 
@@ -46,8 +48,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let catalog = config::tables(&config)?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
     let ready = ready.map_err(refused)?;
-    let mut output = Output::open(args.output.as_deref())?;
-    let mask = Mask::new(&ready.table, args.size, args.seed).map_err(Failure::of_setting)?;
+    let output = Output::open(args.output.as_deref())?;
+    let mut progress = Progress::new("pixels", Mask::steps(args.size), false);
+    let mut done = 0;
+    let mask = Mask::new_while(&ready.table, args.size, args.seed, |pixels| {
+        done += pixels as u64;
+        progress.reach(done, "");
+        true
+    });
+    progress.finish();
+    let mask = mask.map_err(Failure::of_setting)?.context("stopped")?;
     let written = match is_array {
         true => mask.to_npy(args.bits),
         false => mask.to_png(args.bits),
@@ -60,20 +70,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let drawn = encoded(&drawing, ("--spectrum", Some(path)), SIZE)?;
         output::write(Some(path), &drawn)?;
     }
-    output.write(&written)?;
-    Ok(output.finish()?)
+    output.end_with(&written)
 }
 
 /// Whether the file is an array of NumPy, by its ending, else a PNG.
 fn is_array(output: Option<&Path>) -> Result<bool, Failure> {
-    let Some(path) = output else {
-        return Ok(false);
-    };
+    let path = output.unwrap_or(Path::new("-"));
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    match ending.as_ref().and_then(|ending| ending.to_str()) {
-        Some("npy") => Ok(true),
-        Some("png") => Ok(false),
-        None if ending.is_none() => Ok(false),
+    match ending.as_ref().map(|ending| ending.to_str()) {
+        Some(Some("npy")) => Ok(true),
+        Some(Some("png")) | None => Ok(false),
         _ => refuse!(
             "--output {}: no format of masks; allowed: a file whose name ends in .png or .npy",
             path.display()

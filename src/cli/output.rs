@@ -76,6 +76,12 @@ impl Output {
         anyhow::Error::new(error).context(format!("cannot write {place}"))
     }
 
+    /// Writes the last bytes and ends.
+    pub(super) fn end_with(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.write(bytes)?;
+        Ok(self.finish()?)
+    }
+
     /// Ends the output. A file is renamed to its final name once the disk holds all of it.
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
         let writer = std::mem::replace(&mut self.writer, Sink::Plain(Box::new(io::sink())));
@@ -152,9 +158,7 @@ pub(super) fn check(path: &Path) -> anyhow::Result<()> {
 }
 
 pub(super) fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
-    let mut output = Output::open(path)?;
-    output.write(bytes)?;
-    Ok(output.finish()?)
+    Output::open(path)?.end_with(bytes)
 }
 
 pub(super) fn print(text: &str) -> Result<(), Failure> {

@@ -36,13 +36,9 @@ pub(super) fn arrangement(args: &ArrangementArgs) -> Result<(), Failure> {
     let Some(list) = query.list else {
         return output::print_json([facts]);
     };
-    let places = query
-        .set
-        .clone()
-        .map(Placed::at_once)
-        .transpose()
-        .map_err(refused)?;
-    let listing = Listing::new(&query, places, config.limits.max_points).map_err(refused)?;
+    let places = query.set.clone().map(Placed::at_once).transpose();
+    let listing = Listing::new(&query, places.map_err(refused)?, config.limits.max_points);
+    let listing = listing.map_err(refused)?;
     let cursor = listing.cursor();
     let mut output = Output::open(None)?;
     for block in listing.text(list, &facts) {

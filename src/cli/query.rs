@@ -280,8 +280,15 @@ pub(super) fn described(planned: &Planned) -> String {
         } else {
             format!("{}: ", set.name)
         };
+        let period = set.period.map_or(String::new(), |period| {
+            let (twin, side) = (period.twin, period.side);
+            format!(
+                ", period {twin} of {} points and side {side}",
+                twin.points()
+            )
+        });
         format!(
-            "{name}profile {}, alpha {}, map {}, spacing {}, seed {}, warp {}, table {}",
+            "{name}profile {}, alpha {}, map {}{period}, spacing {}, seed {}, warp {}, table {}",
             set.entry.key.profile,
             set.entry.key.alpha,
             set.entry.key.size,

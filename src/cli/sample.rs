@@ -49,9 +49,8 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
     Encoding::of_ending(&ending).ok_or_else(|| {
         Failure::Usage(anyhow!(
             "--output ends with .{ending}, which is no format: use --format, or one of the endings \
-             {}, arrows, {}",
-            Encoding::names(Encoding::ALL),
-            Encoding::names(Encoding::FILES)
+             {}, arrows",
+            Encoding::names()
         ))
     })
 }
@@ -70,7 +69,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some(encoding) => encoding,
         None => encoding_of(args.output.as_deref())?,
     };
-    if !encoding.is_text() {
+    if !encoding.traits().is_text {
         must_not_be_terminal(args.output.as_deref(), encoding.name())?;
     }
     check_packing(args, encoding)?;

@@ -45,7 +45,7 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let announced = (config.log.output == LogOutput::Stderr).then_some(scheme);
     let mut app = App::new(config).map_err(Failure::Usage)?;
-    if app.service().catalog().entries().next().is_none() {
+    if app.service().catalog().tables().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }
     let listener = bind(listen)?;
@@ -89,7 +89,7 @@ async fn serve(
         announce(scheme, address, app.admin_address())
             .context("cannot write to standard output")?;
     }
-    let tables = app.service().catalog().entries().count();
+    let tables = app.service().catalog().tables().len();
     tracing::info!(%address, tables, threads, "serving");
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {

@@ -101,7 +101,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (planned, options) = planned.map_err(|error| refused(args, error))?;
     let encoding = options.encoding.unwrap_or(encoding);
     let looks = options.output(encoding).map(|mut looks| {
-        if encoding.is_picture() {
+        if encoding.traits().is_picture {
             looks.size = size;
             looks.dot = Some(args.dot);
         }

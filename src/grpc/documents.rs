@@ -24,6 +24,14 @@ use super::{
 pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
     let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let of = &entry.provenance;
+    let parameter = |(name, value)| proto::Parameter { name, value };
+    let figure = |(name, value)| Figure { name, value };
+    let figures = of.figures.iter().map(|figures| Figures {
+        subject: figures.subject.clone(),
+        seen: figures.seen,
+        points: figures.points,
+        values: figures.values.iter().cloned().map(figure).collect(),
+    });
     Profile {
         profile: entry.key.profile.as_ref().into(),
         alpha: entry.key.alpha.to_string(),
@@ -36,33 +44,10 @@ pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
         digest: entry.digest.clone(),
         provenance: Some(Provenance {
             optimizer: of.optimizer.clone(),
-            parameters: of
-                .parameters
-                .iter()
-                .cloned()
-                .map(|(name, value)| proto::Parameter { name, value })
-                .collect(),
+            parameters: of.parameters.iter().cloned().map(parameter).collect(),
             seed: of.seed,
-            twins: of
-                .twins
-                .iter()
-                .map(|t| format!("{}/{}", t.p(), t.q()))
-                .collect(),
-            figures: of
-                .figures
-                .iter()
-                .map(|figures| Figures {
-                    subject: figures.subject.clone(),
-                    seen: figures.seen,
-                    points: figures.points,
-                    values: figures
-                        .values
-                        .iter()
-                        .cloned()
-                        .map(|(name, value)| Figure { name, value })
-                        .collect(),
-                })
-                .collect(),
+            twins: of.twins.iter().map(ToString::to_string).collect(),
+            figures: figures.collect(),
         }),
     }
 }

@@ -18,11 +18,11 @@ use super::{
     message::{Decoded, Shaped},
     messages::Messages,
     proto::{
-        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
-        GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
-        ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
-        ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld,
-        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
+        CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, GetMaskRequest,
+        GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest, ListFieldsResponse,
+        ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest, ListProfilesResponse,
+        ListWorldsRequest, ListWorldsResponse, LoadedWorld, SplitPointsRequest,
+        SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
     },
     query, resolved,
     server::point_service_server::PointService,
@@ -75,20 +75,6 @@ impl Points {
         self.0.read(effort, read, price, check).await
     }
 
-    async fn count(
-        &self,
-        caller: &Caller,
-        request: Decoded<StreamPointsRequest>,
-    ) -> Result<CountPointsResponse, Error> {
-        let (request, query, encoding) = self.read(request).await?;
-        let planned = self.0.count(caller, query).await?;
-        Ok(CountPointsResponse {
-            count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
-            digits: planned.count().to_string(),
-            query: Some(resolved::query(&request, &planned, encoding)),
-        })
-    }
-
     async fn split(
         &self,
         caller: &Caller,
@@ -105,21 +91,6 @@ impl Points {
             parts: places.into_iter().map(part).collect(),
         })
     }
-}
-
-/// The query of a request, which must be there.
-fn required(
-    query: Option<StreamPointsRequest>,
-    effort: usize,
-) -> Result<Decoded<StreamPointsRequest>, Error> {
-    let missing = || Fault::missing("query", "a StreamPointsRequest");
-    let message = Box::new(query.ok_or_else(missing)?);
-    Ok(Decoded { message, effort })
-}
-
-/// A fault of the query of a request, named as a part of it.
-fn of_query(error: Error) -> Error {
-    status::within("query", query::by_field(error))
 }
 
 type Answer<A> = Result<Response<A>, Status>;
@@ -146,11 +117,16 @@ impl PointService for Points {
 
     async fn count_points(
         &self,
-        request: Request<Raw<CountPointsRequest>>,
+        request: Request<Raw<StreamPointsRequest>>,
     ) -> Answer<CountPointsResponse> {
-        self.answer(request, identity, async |caller, request| {
-            let query = required(request.message.query, request.effort)?;
-            self.count(caller, query).await.map_err(of_query)
+        self.answer(request, query::by_field, async |caller, request| {
+            let (request, query, encoding) = self.read(request).await?;
+            let planned = self.0.count(caller, query).await?;
+            Ok(CountPointsResponse {
+                count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
+                digits: planned.count().to_string(),
+                query: Some(resolved::query(&request, &planned, encoding)),
+            })
         })
         .await
     }
@@ -160,10 +136,18 @@ impl PointService for Points {
         request: Request<Raw<SplitPointsRequest>>,
     ) -> Answer<SplitPointsResponse> {
         self.answer(request, identity, async |caller, request| {
-            let SplitPointsRequest { query, parts } = *request.message;
-            let query = required(query, request.effort)?;
-            let parts = query::parts(&query.message, parts)?;
-            self.split(caller, query, parts).await.map_err(of_query)
+            let SplitPointsRequest {
+                request: whole,
+                parts,
+            } = *request.message;
+            let missing = || Fault::missing("request", "a StreamPointsRequest");
+            let whole = Decoded {
+                message: Box::new(whole.ok_or_else(missing)?),
+                effort: request.effort,
+            };
+            let parts = query::parts(&whole.message, parts)?;
+            let answer = self.split(caller, whole, parts).await;
+            answer.map_err(|error| status::within("request", query::by_field(error)))
         })
         .await
     }

@@ -106,7 +106,7 @@ struct Alive {
 struct Ready {
     /// Whether it takes requests.
     ready: bool,
-    /// The number of tables that are loaded.
+    /// The number of tables that are loaded now.
     tables: usize,
     /// The number of current streams.
     streams: usize,
@@ -124,10 +124,9 @@ async fn ready(
     _: Context,
 ) -> Result<Response, Refused> {
     let ready = readiness.is_ready();
-    let catalog = service.catalog();
     let mut response = rest::json(&Ready {
         ready,
-        tables: catalog.entries().chain(catalog.in_space()).count(),
+        tables: service.catalog().tables().len(),
         streams: service.streams().open(),
     })?;
     if !ready {

@@ -8,6 +8,7 @@
 mod fingerprint;
 
 use std::{
+    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -20,7 +21,7 @@ use futures_util::future::OptionFuture;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_catalog::{Refusal, Reload};
+use strew_catalog::Reload;
 use strew_error::{Error, Kind};
 use strew_service::Service;
 use strew_service::access::Gate;
@@ -128,14 +129,14 @@ impl Reloader {
             Some(Ok(count)) => done.keys = Some(count),
             Some(Err(error)) => {
                 let file = self.gate.settings().keys_file();
-                let source = file.map_or("access.keys".into(), |file| file.display().to_string());
-                done.refuse(source, error.to_string());
+                let file = file.or(Some(Path::new("access.keys")));
+                done.tables.refuse_file(file, &error);
             }
             None => {}
         }
         match certificates {
             Some(Ok(true)) => tracing::info!("the certificates were replaced"),
-            Some(Err(error)) => done.refuse(error.path(), error.to_string()),
+            Some(Err(error)) => done.tables.refuse_file(Some(error.path()), &error),
             _ => {}
         }
         // A look that finds the same damaged file again is no news.
@@ -210,16 +211,6 @@ impl Drop for Reading {
     }
 }
 
-impl Done {
-    fn refuse(&mut self, source: String, detail: String) {
-        self.tables.refused.push(Refusal {
-            source,
-            detail,
-            serving: None,
-        });
-    }
-}
-
 /// Whether a reload did or found anything that the one before did not.
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
@@ -228,7 +219,10 @@ fn differs(before: &Done, now: &Done) -> bool {
         || tables.fields.is_any()
         || tables.worlds.is_any()
         || tables.except.is_any();
-    has_changed || tables.refused != before.tables.refused || now.keys != before.keys
+    has_changed
+        || tables.refused != before.tables.refused
+        || tables.at_next_start != before.tables.at_next_start
+        || now.keys != before.keys
 }
 
 fn log(cause: Cause, done: &Done, metrics: &Metrics) {
@@ -278,6 +272,13 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             refusal.detail
         );
     }
+    if let [others @ .., last] = &reload.at_next_start[..] {
+        let (names, take) = match others {
+            [] => (last.clone(), "it takes"),
+            _ => (format!("{} and {last}", others.join(", ")), "they take"),
+        };
+        tracing::warn!(cause, "{names} changed; {take} effect at the next start");
+    }
     if done.keys == Some(0) {
         tracing::error!(
             cause,
@@ -290,6 +291,7 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
         kept = reload.kept.len(),
         removed = reload.removed.len(),
         refused = reload.refused.len(),
+        tables = reload.tables,
         keys = done.keys,
         "tables read again"
     );

@@ -169,18 +169,15 @@ impl App {
         // The last connection ends it; if that takes too long, streams are broken off so that
         // readers see it, and then so are connections.
         let drain = config::seconds(self.config.shutdown.drain_seconds);
-        if tokio::time::timeout(drain, connections.closed())
-            .await
-            .is_ok()
-        {
+        let closed = tokio::time::timeout(drain, connections.closed());
+        if closed.await.is_ok() {
             return Ok(0);
         }
         let broken = self.service.streams().open();
+        self.metrics.ends.cancel();
         self.service.streams().stop();
-        if tokio::time::timeout(GRACE, connections.closed())
-            .await
-            .is_err()
-        {
+        let closed = tokio::time::timeout(GRACE, connections.closed());
+        if closed.await.is_err() {
             connections.end();
             connections.closed().await;
         }

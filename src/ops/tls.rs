@@ -37,8 +37,8 @@ impl TlsError {
         }
     }
 
-    pub(super) fn path(&self) -> String {
-        self.path.display().to_string()
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 }
 

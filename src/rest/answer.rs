@@ -1,15 +1,20 @@
 //! Answers with points on every path: checked, planned, streamed.
 
-use std::{cell::RefCell, collections::BTreeMap, convert::Infallible, pin::pin, sync::LazyLock};
+use std::{
+    cell::RefCell,
+    collections::BTreeMap,
+    pin::pin,
+    sync::{Arc, LazyLock},
+};
 
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
-use strew_encode::{Answer, Encoding, Output, legend, write_number};
+use strew_encode::{Answer, Encoding, Index, Output, Piece, legend, write_number};
 use strew_error::{Error, Kind, integer::Long};
-use strew_plan::{Planned, QueryEcho, TableEcho};
+use strew_plan::{Planned, QueryEcho, TableEcho, considered};
 use strew_query::{Options, Query};
 use strew_service::{Record, Service};
 
@@ -33,13 +38,14 @@ static VERSION: LazyLock<HeaderValue> = LazyLock::new(|| ALGORITHM_VERSION.into(
 /// The columns of what most requests ask for.
 const PLAIN_F32: HeaderValue = HeaderValue::from_static(legend::F32);
 const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
+const PERIOD: HeaderName = HeaderName::from_static("strew-period");
 /// Proxies hold the head of an answer in 4 kB, and the other headers take up to 3.6.
 const LONGEST_KINDS: usize = 400;
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 pub(super) const NEXT: HeaderName = HeaderName::from_static("strew-next");
 const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
-const HEADERS: [(&str, &str); 12] = [
+const HEADERS: [(&str, &str); 13] = [
     ("strew-count", "The exact number of points that follow."),
     (
         "strew-table",
@@ -81,9 +87,15 @@ const HEADERS: [(&str, &str); 12] = [
          /v1/count has the same numbers.",
     ),
     (
+        "strew-period",
+        "With `periodic`: the period that was chosen, a JSON object with the fraction p/q, the number of points and the \
+         side, as in the query of an answer.",
+    ),
+    (
         "accept-ranges",
-        "`bytes` with npy, f32, f64, ply, multimesh and instances: GET with `Range: bytes=first-last` is answered \
-         206 with these bytes of the whole, and only their points are made; all other headers are those of the whole.",
+        "`bytes` with npy, f32, f64, ply, multimesh, instances, parquet of up to 16,777,216 points, and small answers: \
+         GET with `Range: bytes=first-last` is answered 206 with these bytes of the whole, and only their points are \
+         made; all other headers are those of the whole.",
     ),
     (
         "strew-warning",
@@ -177,9 +189,7 @@ pub(super) async fn stream(
     query: Box<Query>,
     options: Options,
 ) -> Result<Response, Error> {
-    let Context {
-        method, headers, ..
-    } = context;
+    let (method, headers) = (&context.method, &context.headers);
     let chosen = match options.encoding {
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(headers)?,
@@ -189,116 +199,132 @@ pub(super) async fn stream(
     output.relative_to = query.region.corner;
     if *method == Method::POST {
         // A body is not part of the address, so caches do not keep its answer.
-        return points(service, context, query, (chosen, output), true).await;
+        return points(service, context, query, (chosen, output)).await;
     }
     let mut freshness = freshness(service, context, &query, chosen.content_type);
     freshness.negotiated = true;
     let is_wanted = freshness.verdict(headers) == Verdict::Wanted;
-    if is_wanted && let Some(wanted) = Wanted::of(method, headers, &freshness) {
+    let range = Wanted::of(method, headers, &freshness).filter(|_| is_wanted);
+    if !is_wanted || range.is_some() || *method == Method::HEAD {
+        let tag = freshness.tag.as_bytes().into();
         // On the heap, lest all answers have room for it.
-        let mut make = Box::pin(part(service, context, query, chosen, output, wanted));
+        let mut make = Box::pin(part(service, context, query, (chosen, output), range, tag));
         return freshness.answer(headers, make.as_mut()).await;
     }
-    let is_wanted = is_wanted && *method != Method::HEAD;
-    let make = points(service, context, query, (chosen, output), is_wanted);
+    let make = points(service, context, query, (chosen, output));
     freshness.answer(headers, pin!(make)).await
 }
 
-/// The response with the points, or without a body if they are not wanted.
+/// The response with all points.
 async fn points(
     service: &Service,
     context: &Context,
     query: Box<Query>,
     (chosen, output): (Chosen, Output),
-    is_wanted: bool,
 ) -> Result<Response, Error> {
-    let caller = &context.caller;
-    // An svg is made row by row.
-    let picture = (chosen.encoding == Encoding::Png).then_some(output.size);
-    let (permit, planned) = if is_wanted {
-        let (permit, planned) = service.open(caller, query, picture).await?;
-        (Some(permit), planned)
-    } else {
-        (None, service.plan(caller, query).await?)
-    };
+    let (permit, planned) = service.open(&context.caller, query, Some(&output)).await?;
     let answer = planned.answer(&output, service.limits().block_bytes)?;
-    let mut response_headers = describe(&planned, &answer, chosen)?;
-    let size = answer.size();
-    let body = match permit {
-        // Without a body there is nothing to stream, and HTTP wants to hear so at once.
-        _ if size == Some(0) => Body::empty(),
-        None => coding::unknown_length(),
-        Some(permit) if planned.query.is_small() && !chosen.encoding.is_picture() => {
-            let whole = service.at_once(permit, answer)?;
-            if size.is_some() {
-                Body::from(whole)
-            } else {
-                // As the answer to HEAD says: the size is not known before.
-                Body::from_stream(stream::iter([Ok::<_, Infallible>(whole)]))
-            }
-        }
-        Some(permit) => Body::from_stream(service.blocks(permit, answer)),
-    };
-    let is_told = http_body::Body::size_hint(&body).exact().is_some();
-    if let Some(size) = size.filter(|_| !is_told) {
-        response_headers.insert(header::CONTENT_LENGTH, size.into());
+    let mut headers = describe(&planned, &answer, chosen)?;
+    if let Some(size) = answer.size() {
+        headers.insert(header::CONTENT_LENGTH, size.into());
     }
+    // Where there is nothing to stream, HTTP wants to hear so at once.
+    let body = match is_whole(&planned, chosen) || answer.size() == Some(0) {
+        true => Body::from(service.at_once(answer)?),
+        false => Body::from_stream(service.blocks(permit, answer)),
+    };
     let mut response = Response::new(body);
-    *response.headers_mut() = response_headers;
+    *response.headers_mut() = headers;
     Ok(response)
 }
 
-/// Answers with a part, or with the whole if the format has no parts.
+/// Whether an answer is made whole before it is sent.
+fn is_whole(planned: &Planned, chosen: Chosen) -> bool {
+    planned.query.is_small() && !chosen.encoding.traits().is_picture
+}
+
+/// The most points of an answer in blocks whose bytes can be asked for: all are made once to know where they lie.
+const MOST_INDEXED: u128 = 1 << 24;
+
+/// Whether any part of an answer can be made alone.
+fn is_in_pieces(planned: &Planned, answer: &Answer) -> bool {
+    match answer.piece() {
+        Some(Piece::Points(_)) => planned.count() <= MOST_INDEXED,
+        piece => piece.is_some(),
+    }
+}
+
+/// The response with a part, with the whole if the answer has no parts, or without a body if no range is wanted.
 async fn part(
     service: &Service,
     context: &Context,
     query: Box<Query>,
-    chosen: Chosen,
-    output: Output,
-    wanted: Wanted,
+    (chosen, output): (Chosen, Output),
+    range: Option<Wanted>,
+    tag: Vec<u8>,
 ) -> Result<Response, Error> {
-    let block_bytes = service.limits().block_bytes;
-    let planned = service.plan(&context.caller, query.clone()).await?;
-    let whole = planned.answer(&output, block_bytes)?;
-    let (Some(size), Some(record)) = (whole.size(), whole.record_bytes()) else {
-        return points(service, context, query, (chosen, output), true).await;
+    let (caller, block_bytes) = (&context.caller, service.limits().block_bytes);
+    let all = || points(service, context, query.clone(), (chosen, output.clone()));
+    let open = async |query: Box<Query>| {
+        let (permit, planned) = service.open(caller, query, Some(&output)).await?;
+        Ok::<_, Error>((permit, planned.answer(&output, block_bytes)?))
     };
-    let Some(part) = wanted.within(size) else {
+    let planned = service.plan(caller, query.clone()).await?;
+    let whole = planned.answer(&output, block_bytes)?;
+    let index = match whole.index() {
+        Some(index) => Some(Arc::new(index)),
+        None if is_whole(&planned, chosen) => {
+            caller.charge(considered(&planned))?;
+            let answer = planned.answer(&output, block_bytes)?;
+            Some(Arc::new(Index::whole(service.at_once(answer)?)))
+        }
+        None if is_in_pieces(&planned, &whole) => {
+            Some(service.index(tag, open(query.clone())).await?)
+        }
+        None => None,
+    };
+    let mut headers = describe(&planned, &whole, chosen)?;
+    let Some(range) = range else {
+        if let Some(index) = index {
+            headers.insert(header::CONTENT_LENGTH, index.size().into());
+        }
+        let mut response = Response::new(coding::unknown_length());
+        *response.headers_mut() = headers;
+        return Ok(response);
+    };
+    let Some(index) = index else {
+        return all().await;
+    };
+    let size = index.size();
+    let Some(part) = range.within(size) else {
         return Ok(freshness::unsatisfiable(size));
     };
-    let before = whole.head().cloned().unwrap_or_default();
-    let length = before.len() as u64;
-    let in_head = |place: u64| usize::try_from(place.min(length)).unwrap_or(before.len());
-    let front = before.slice(in_head(part.start)..in_head(part.end));
-    // The bytes among the records, and the records that have them.
-    let bytes = part.start.max(length) - length..part.end.max(length) - length;
-    let records = bytes.start / record..bytes.end.div_ceil(record);
-    let body = if bytes.is_empty() {
-        Body::from(front)
+    let cut = index.cut(part.clone());
+    let body = if cut.rows.is_empty() {
+        Body::from([cut.front, cut.back].concat())
     } else {
         let mut some = query.clone();
-        some.window.offset = some.window.offset.saturating_add(records.start);
-        some.window.limit = Some(records.end - records.start);
-        let (permit, planned) = service.open(&context.caller, some, None).await?;
-        let rows = planned.answer(&output, block_bytes)?;
-        if rows.legend() != whole.legend() || rows.origin() != whole.origin() {
+        some.window.offset = some.window.offset.saturating_add(cut.rows.start);
+        let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
+        some.window.limit = Some(cut.rows.end.min(count) - cut.rows.start);
+        let (permit, made) = open(some).await?;
+        if made.legend() != whole.legend() || made.origin() != whole.origin() {
             drop(permit);
-            return points(service, context, query, (chosen, output), true).await;
+            return all().await;
         }
-        let head = rows.head().map_or(0, |head| head.len() as u64);
-        let start = head + bytes.start - records.start * record;
-        let blocks = service.blocks(permit, rows);
-        let wanted = freshness::cut(blocks, start..start + (bytes.end - bytes.start));
-        Body::from_stream(stream::iter([Ok(front)]).chain(wanted))
+        let head = made.head().map_or(0, |head| head.len() as u64);
+        let blocks = service.blocks(permit, made);
+        let wanted = freshness::cut(blocks, head + cut.bytes.start..head + cut.bytes.end);
+        let [front, back] = [cut.front, cut.back].map(|end| stream::iter([Ok(end)]));
+        Body::from_stream(front.chain(wanted).chain(back))
     };
     let mut response = Response::new(body);
     *response.status_mut() = StatusCode::PARTIAL_CONTENT;
-    *response.headers_mut() = describe(&planned, &whole, chosen)?;
     let place = format!("bytes {}-{}/{size}", part.start, part.end - 1);
     let place = HeaderValue::from_str(&place).map_err(|_| Error::Internal("a range is no text"))?;
-    let headers = response.headers_mut();
     headers.insert(header::CONTENT_RANGE, place);
     headers.insert(header::CONTENT_LENGTH, (part.end - part.start).into());
+    *response.headers_mut() = headers;
     Ok(response)
 }
 
@@ -325,22 +351,19 @@ pub(super) fn freshness(
 }
 
 fn disposition(encoding: Encoding) -> HeaderValue {
-    static KNOWN: LazyLock<Vec<(Encoding, HeaderValue)>> = LazyLock::new(|| {
-        let made = |encoding: Encoding| {
-            let way = if encoding.is_shown() {
-                "inline"
-            } else {
-                "attachment"
+    /// In the order of [`Encoding`].
+    static KNOWN: LazyLock<Vec<HeaderValue>> = LazyLock::new(|| {
+        let made = |encoding: &Encoding| {
+            let way = match encoding.traits().is_shown {
+                true => "inline",
+                false => "attachment",
             };
             let text = format!("{way}; filename=\"{}\"", encoding.file_name());
-            (encoding, HeaderValue::from_str(&text).expect("plain names"))
+            HeaderValue::from_str(&text).expect("plain names")
         };
-        Encoding::ALL.iter().copied().map(made).collect()
+        Encoding::ALL.iter().map(made).collect()
     });
-    let found = KNOWN.iter().find(|(known, _)| *known == encoding);
-    found.map_or(HeaderValue::from_static("attachment"), |(_, value)| {
-        value.clone()
-    })
+    KNOWN[encoding as usize].clone()
 }
 
 /// The header of a table. Most answers of a thread are of one.
@@ -379,7 +402,7 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         headers.insert(NEXT, text(&token.to_string())?);
     }
     if !planned.query.is_small()
-        && !chosen.encoding.is_picture()
+        && !chosen.encoding.traits().is_picture
         && let Some(token) = planned.beginning()
     {
         headers.insert(CURSOR, text(&token.to_string())?);
@@ -407,6 +430,11 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     {
         headers.insert(KINDS, text(&kinds)?);
     }
+    if let Some(period) = planned.query.sets[0].period {
+        let period = serde_json::to_string(&period.echo());
+        let period = period.map_err(|_| Error::Internal("a period is no text"))?;
+        headers.insert(PERIOD, text(&period)?);
+    }
     if let Some(columns) = answer.legend() {
         headers.insert(
             COLUMNS,
@@ -420,7 +448,7 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         headers.insert(WARNING, HeaderValue::from_static(warning));
     }
     headers.insert(header::CONTENT_DISPOSITION, disposition(chosen.encoding));
-    if answer.record_bytes().is_some() {
+    if is_in_pieces(planned, answer) || is_whole(planned, chosen) {
         headers.insert(header::ACCEPT_RANGES, freshness::BYTES);
     }
     Ok(headers)

@@ -90,6 +90,7 @@ impl Choice {
         let name = HeaderValue::from_static(coding.name());
         parts.headers.insert(header::CONTENT_ENCODING, name);
         parts.headers.remove(header::CONTENT_LENGTH);
+        parts.headers.remove(header::ACCEPT_RANGES);
         let mut response = Response::from_parts(parts, body);
         if let Some(held) = held {
             Whole::hold(&mut response, held);

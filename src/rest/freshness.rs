@@ -265,7 +265,8 @@ impl Wanted {
         let is_current = (headers.get(header::IF_RANGE)).is_none_or(|tag| tag == freshness.tag);
         let (unit, range) = text.split_once('=')?;
         let is_simple = unit.trim().eq_ignore_ascii_case("bytes") && !range.contains(',');
-        if *method != Method::GET || !is_current || !is_simple {
+        // The parts of what is compressed are not those of the text.
+        if *method != Method::GET || !is_current || !is_simple || freshness.coding.is_some() {
             return None;
         }
         let number = |digits: &str| {

@@ -338,13 +338,9 @@ struct DescribedField<'a> {
 async fn all_fields(State(service): Shared, context: Context) -> Answered {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
-    let fields = || catalog.fields().iter();
-    let made_of: Vec<(&str, String)> = fields().map(|f| (f.name.as_str(), f.digest())).collect();
-    let make = async {
-        let fields = fields().map(|field| LoadedField::new(field)).collect();
-        document::json(&Fields { fields })
-    };
-    Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
+    let fields = catalog.fields().iter();
+    let fields = fields.map(|field| LoadedField::new(field)).collect();
+    Ok(context.document(&Fields { fields }).await?)
 }
 
 async fn hold_field(State(service): Shared, Sent { body, .. }: Sent) -> Answered {
@@ -354,9 +350,8 @@ async fn hold_field(State(service): Shared, Sent { body, .. }: Sent) -> Answered
         let text = String::from_utf8_lossy(&body);
         Ok(field::read_json("field", text.trim())?)
     };
-    let hold =
-        |service: &Service, document: Document, stop: &Stop| service.hold_field(document, stop);
-    let held = service.read(bytes, read, Document::price, hold).await?;
+    let held = service.read(bytes, read, Document::price, Service::hold_field);
+    let held = held.await?;
     Ok(document::json(&LoadedField::new(&held))?)
 }
 

@@ -44,7 +44,7 @@ pub(super) fn list(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let get = move |State(service): Shared, context: Context| async move {
         context.values(groups::NONE).read()?;
         let catalog = service.catalog();
-        let made_of: Vec<&str> = catalog.digests().collect();
+        let made_of: Vec<&str> = catalog.tables().map(|entry| &*entry.digest).collect();
         let make = async {
             let new = |entry| Profile::new(entry, &catalog);
             document::json(&Profiles {
@@ -146,25 +146,18 @@ impl<'a> Profile<'a> {
 
 impl<'a> Provenance<'a> {
     fn new(of: &'a table::Provenance) -> Self {
+        let figures = of.figures.iter().map(|figures| Figures {
+            subject: &figures.subject,
+            seen: figures.seen,
+            points: figures.points,
+            values: &figures.values,
+        });
         Self {
             optimizer: &of.optimizer,
             parameters: &of.parameters,
             seed: Long(of.seed),
-            twins: of
-                .twins
-                .iter()
-                .map(|t| format!("{}/{}", t.p(), t.q()))
-                .collect(),
-            figures: of
-                .figures
-                .iter()
-                .map(|figures| Figures {
-                    subject: &figures.subject,
-                    seen: figures.seen,
-                    points: figures.points,
-                    values: &figures.values,
-                })
-                .collect(),
+            twins: of.twins.iter().map(ToString::to_string).collect(),
+            figures: figures.collect(),
         }
     }
 }

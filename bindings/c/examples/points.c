@@ -22,8 +22,8 @@ static void box(const strew_library *library) {
     double *xy = malloc(2 * count * sizeof *xy);
     int64_t *ids = malloc(2 * count * sizeof *ids);
     if (!xy || !ids) abort();
-    check(strew_plan_fill_coordinates(plan, xy, count));
-    check(strew_plan_fill_ids(plan, ids, count));
+    check(strew_plan_fill_coordinates(plan, xy, 2 * count));
+    check(strew_plan_fill_ids(plan, ids, 2 * count));
     printf("%" PRIu64 " points in the box\n", count);
     for (int i = 0; i < 3; i++)
         printf("%" PRId64 ":%" PRId64 " at %.3f, %.3f\n", ids[2 * i], ids[2 * i + 1], xy[2 * i], xy[2 * i + 1]);
@@ -46,7 +46,7 @@ static void chunk(const strew_library *library) {
     double *angles = malloc(count * sizeof *angles);
     int32_t *variants = malloc(count * sizeof *variants);
     if (!xy || !angles || !variants) abort();
-    check(strew_plan_fill_coordinates_f32(plan, xy, count, origin));
+    check(strew_plan_fill_coordinates_f32(plan, xy, 2 * count, origin));
     check(strew_plan_fill_numbers(plan, "angle", angles, count));
     check(strew_plan_fill_codes(plan, "variant", variants, count));
     strew_bytes *columns = NULL;
@@ -69,7 +69,7 @@ static void ball(const strew_library *library) {
     check(strew_plan_count(plan, &count));
     double *xyz = malloc(3 * count * sizeof *xyz);
     if (!xyz) abort();
-    check(strew_plan_fill_coordinates(plan, xyz, count));
+    check(strew_plan_fill_coordinates(plan, xyz, 3 * count));
     printf("%" PRIu64 " points in the ball, the first at %.3f, %.3f, %.3f\n", count, xyz[0], xyz[1], xyz[2]);
     free(xyz);
     strew_plan_free(plan);

@@ -177,17 +177,17 @@ strew_code strew_plan_origin(const strew_plan *plan, double *origin);
 
 /* Writes the coordinates: x and y by turns, in space x, y and z, for each point, in the fixed order of the query.
  *
- * `capacity` is the number of points that `coordinates` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
- * other memory is needed. Large answers are made on all cores.
+ * `capacity` is the number of doubles that `coordinates` has room for, 2 or 3 for each point; `STREW_BUFFER_TOO_SMALL`
+ * if it is too small. No other memory is needed. Large answers are made on all cores.
  *
  * Arguments:
- * `plan` is a plan, `coordinates` has room for `capacity` numbers of each axis. */
+ * `plan` is a plan, `coordinates` has room for `capacity` numbers. */
 strew_code strew_plan_fill_coordinates(const strew_plan *plan,
                                        double *coordinates,
                                        size_t capacity);
 
 /* Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
- * that is null.
+ * that is null. `capacity` counts floats.
  *
  * Arguments:
  * As `strew_plan_fill_coordinates`; `origin` is null or has room for a number of each axis. */
@@ -201,7 +201,7 @@ strew_code strew_plan_fill_coordinates_f32(const strew_plan *plan,
  * The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
  *
  * Arguments:
- * `plan` is a plan, `ids` has room for `capacity` numbers of each axis. */
+ * `plan` is a plan, `ids` has room for `capacity` integers, 2 or 3 for each point. */
 strew_code strew_plan_fill_ids(const strew_plan *plan, int64_t *ids, size_t capacity);
 
 /* Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.

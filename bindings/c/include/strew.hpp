@@ -74,21 +74,21 @@ public:
     /* The coordinates of each point, by turns: x, y, in space z. */
     std::vector<double> coordinates() const {
         std::vector<double> at(Axes * count());
-        check(strew_plan_fill_coordinates(get(), at.data(), at.size() / Axes));
+        check(strew_plan_fill_coordinates(get(), at.data(), at.size()));
         return at;
     }
 
     /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
     std::vector<float> coordinates_f32(std::array<double, Axes> *origin = nullptr) const {
         std::vector<float> at(Axes * count());
-        check(strew_plan_fill_coordinates_f32(get(), at.data(), at.size() / Axes, origin ? origin->data() : nullptr));
+        check(strew_plan_fill_coordinates_f32(get(), at.data(), at.size(), origin ? origin->data() : nullptr));
         return at;
     }
 
     /* The integers of each id, by turns. */
     std::vector<std::int64_t> ids() const {
         std::vector<std::int64_t> ids(Axes * count());
-        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / Axes));
+        check(strew_plan_fill_ids(get(), ids.data(), ids.size()));
         return ids;
     }
 

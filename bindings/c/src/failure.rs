@@ -64,10 +64,10 @@ impl Failure {
         }
     }
 
-    /// A buffer for `capacity` points where there are `count`.
-    pub fn room(capacity: usize, count: usize) -> Self {
-        let detail = format!("has room for fewer than the {count} points");
-        let fault = Fault::new("capacity", capacity, detail, format!("{count} or more"));
+    /// A buffer for `capacity` numbers where `points` have `numbers`.
+    pub fn room(capacity: usize, points: usize, numbers: usize) -> Self {
+        let detail = format!("is less than the {points} points need");
+        let fault = Fault::new("capacity", capacity, detail, format!("{numbers} or more"));
         Self::of(Code::BufferTooSmall, &fault.into())
     }
 

@@ -143,11 +143,11 @@ pub unsafe extern "C" fn strew_plan_origin(plan: *const strew_plan, origin: *mut
 
 /// Writes the coordinates: x and y by turns, in space x, y and z, for each point, in the fixed order of the query.
 ///
-/// `capacity` is the number of points that `coordinates` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
-/// other memory is needed. Large answers are made on all cores.
+/// `capacity` is the number of doubles that `coordinates` has room for, 2 or 3 for each point; `STREW_BUFFER_TOO_SMALL`
+/// if it is too small. No other memory is needed. Large answers are made on all cores.
 ///
 /// # Safety
-/// `plan` is a plan, `coordinates` has room for `capacity` numbers of each axis.
+/// `plan` is a plan, `coordinates` has room for `capacity` numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_fill_coordinates(
     plan: *const strew_plan,
@@ -156,14 +156,14 @@ pub unsafe extern "C" fn strew_plan_fill_coordinates(
 ) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates")? };
+        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates", None)? };
         plan.library.fill_coordinates(&plan.planned, at)?;
         Ok(())
     })
 }
 
 /// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
-/// that is null.
+/// that is null. `capacity` counts floats.
 ///
 /// # Safety
 /// As `strew_plan_fill_coordinates`; `origin` is null or has room for a number of each axis.
@@ -176,7 +176,7 @@ pub unsafe extern "C" fn strew_plan_fill_coordinates_f32(
 ) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates")? };
+        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates", None)? };
         let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
         if !origin.is_null() {
             // SAFETY: as the caller promises.
@@ -192,7 +192,7 @@ pub unsafe extern "C" fn strew_plan_fill_coordinates_f32(
 /// The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
 ///
 /// # Safety
-/// `plan` is a plan, `ids` has room for `capacity` numbers of each axis.
+/// `plan` is a plan, `ids` has room for `capacity` integers, 2 or 3 for each point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_fill_ids(
     plan: *const strew_plan,
@@ -201,25 +201,30 @@ pub unsafe extern "C" fn strew_plan_fill_ids(
 ) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (plan, ids) = unsafe { filled(plan, ids, capacity, "ids")? };
+        let (plan, ids) = unsafe { filled(plan, ids, capacity, "ids", None)? };
         ids.copy_from_slice(&plan.columns()?.ids);
         Ok(())
     })
 }
 
-/// A plan, and the room for a number of each axis for each of its points.
+/// A plan, and the room for `each` numbers of each of its points, or a number of each axis.
 ///
 /// # Safety
-/// `plan` is a plan, `numbers` has room for `capacity` numbers of each axis.
+/// `plan` is a plan, `numbers` has room for `capacity` numbers.
 unsafe fn filled<'a, T: Copy>(
     plan: *const strew_plan,
     numbers: *mut T,
     capacity: usize,
     name: &str,
+    each: Option<usize>,
 ) -> Result<(&'a strew_plan, &'a mut [T]), Failure> {
     // SAFETY: as the caller promises.
     let plan = unsafe { borrowed(plan, "plan")? };
-    let count = plan.count_for(capacity)? * plan.planned.axes();
+    let points = plan.library.count_to_make(&plan.planned)?;
+    let count = points.saturating_mul(each.unwrap_or(plan.planned.axes()));
+    if count > capacity {
+        return Err(Failure::room(capacity, points, count));
+    }
     // SAFETY: as the caller promises.
     Ok((plan, unsafe { room(numbers, count, name)? }))
 }
@@ -239,15 +244,14 @@ pub unsafe extern "C" fn strew_plan_fill_numbers(
 ) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        unsafe {
-            let (plan, name) = (borrowed(plan, "plan")?, text(column, "column")?);
-            let count = plan.count_for(capacity)?;
-            let FurtherValues::Numbers(numbers) = plan.further(name)? else {
-                let allowed = "strew_plan_fill_codes for columns of names";
-                return Err(Failure::argument("column", "a column of names", allowed));
-            };
-            room(values, count, "values")?.copy_from_slice(numbers);
-        }
+        let name = unsafe { text(column, "column")? };
+        // SAFETY: as the caller promises.
+        let (plan, values) = unsafe { filled(plan, values, capacity, "values", Some(1))? };
+        let FurtherValues::Numbers(numbers) = plan.further(name)? else {
+            let allowed = "strew_plan_fill_codes for columns of names";
+            return Err(Failure::argument("column", "a column of names", allowed));
+        };
+        values.copy_from_slice(numbers);
         Ok(())
     })
 }
@@ -268,15 +272,14 @@ pub unsafe extern "C" fn strew_plan_fill_codes(
 ) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        unsafe {
-            let (plan, name) = (borrowed(plan, "plan")?, text(column, "column")?);
-            let count = plan.count_for(capacity)?;
-            let FurtherValues::Names(_, indices) = plan.further(name)? else {
-                let allowed = "strew_plan_fill_numbers for columns of numbers";
-                return Err(Failure::argument("column", "a column of numbers", allowed));
-            };
-            room(codes, count, "codes")?.copy_from_slice(indices);
-        }
+        let name = unsafe { text(column, "column")? };
+        // SAFETY: as the caller promises.
+        let (plan, codes) = unsafe { filled(plan, codes, capacity, "codes", Some(1))? };
+        let FurtherValues::Names(_, indices) = plan.further(name)? else {
+            let allowed = "strew_plan_fill_numbers for columns of numbers";
+            return Err(Failure::argument("column", "a column of numbers", allowed));
+        };
+        codes.copy_from_slice(indices);
         Ok(())
     })
 }
@@ -345,15 +348,6 @@ pub unsafe extern "C" fn strew_plan_split(
 }
 
 impl strew_plan {
-    /// The number of points, which a buffer must have room for.
-    pub(crate) fn count_for(&self, capacity: usize) -> Result<usize, Failure> {
-        let count = self.library.count_to_make(&self.planned)?;
-        match count <= capacity {
-            true => Ok(count),
-            false => Err(Failure::room(capacity, count)),
-        }
-    }
-
     pub(crate) fn columns(&self) -> Result<&::strew_plan::Columns, Failure> {
         if let Some(made) = self.columns.get() {
             return Ok(made);

@@ -84,15 +84,15 @@ static void buffers(void) {
     int64_t *ids = malloc(2 * count * sizeof *ids);
     int32_t *codes = malloc(count * sizeof *codes);
     EXPECT(xy && angles && near && ids && codes);
-    EXPECT(strew_plan_fill_coordinates(plan, xy, count - 1) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, 2 * count - 1) == STREW_BUFFER_TOO_SMALL);
     EXPECT(strcmp(strew_error_message(),
-                  "`capacity` = `99`: has room for fewer than the 100 points; allowed: 100 or more") == 0);
-    EXPECT(strew_plan_fill_coordinates(plan, NULL, count) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_fill_coordinates(plan, xy, count) == STREW_OK);
+                  "`capacity` = `199`: is less than the 100 points need; allowed: 200 or more") == 0);
+    EXPECT(strew_plan_fill_coordinates(plan, NULL, 2 * count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, 2 * count) == STREW_OK);
     double origin[2] = {1, 1};
-    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, origin) == STREW_OK && origin[0] == 0);
-    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, NULL) == STREW_OK);
-    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, 2 * count, origin) == STREW_OK && origin[0] == 0);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, 2 * count, NULL) == STREW_OK);
+    EXPECT(strew_plan_fill_ids(plan, ids, 2 * count) == STREW_OK);
     EXPECT(strew_plan_fill_ids(plan, ids, 0) == STREW_BUFFER_TOO_SMALL);
     EXPECT(strew_plan_fill_numbers(plan, "angle", angles, count) == STREW_OK);
     EXPECT(strew_plan_fill_codes(plan, "variant", codes, count) == STREW_OK);
@@ -144,12 +144,17 @@ static void space(void) {
     float *near = malloc(3 * count * sizeof *near);
     int64_t *ids = malloc(3 * count * sizeof *ids);
     EXPECT(xyz && turns && near && ids);
-    EXPECT(strew_plan_fill_coordinates(plan, xyz, count - 1) == STREW_BUFFER_TOO_SMALL);
-    EXPECT(strew_plan_fill_coordinates(plan, xyz, count) == STREW_OK);
-    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, NULL) == STREW_OK);
-    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, origin) == STREW_OK && origin[0] == -12);
+    /* Buffers for pairs are too small: nothing is written. */
+    for (uint64_t i = 0; i < 3 * count; i++) xyz[i] = near[i] = (float)(ids[i] = -99);
+    const strew_code doubles = strew_plan_fill_coordinates(plan, xyz, 2 * count);
+    const strew_code floats = strew_plan_fill_coordinates_f32(plan, near, 3 * count - 1, NULL);
+    const strew_code integers = strew_plan_fill_ids(plan, ids, 2 * count);
+    for (uint64_t i = 0; i < 3 * count; i++) EXPECT(xyz[i] == -99 && near[i] == -99 && ids[i] == -99);
+    EXPECT(doubles == STREW_BUFFER_TOO_SMALL && floats == doubles && integers == doubles);
+    EXPECT(strew_plan_fill_coordinates(plan, xyz, 3 * count) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, 3 * count, origin) == STREW_OK && origin[0] == -12);
     EXPECT(strew_plan_origin(plan, origin) == STREW_OK && origin[1] == 8 && origin[2] == 4);
-    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_OK);
+    EXPECT(strew_plan_fill_ids(plan, ids, 3 * count) == STREW_OK);
     EXPECT(strew_plan_fill_numbers(plan, "qw", turns, count) == STREW_OK);
     for (uint64_t i = 0; i < count; i++) {
         strew_point found;
@@ -197,7 +202,7 @@ int main(void) {
     uint64_t count = 0;
     EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 8);
     double xy[2 * 32];
-    EXPECT(strew_plan_fill_coordinates(plan, xy, 32) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, 2 * 32) == STREW_OK);
     strew_plan_free(plan);
     puts("all calls are as they should be");
     return 0;

@@ -72,10 +72,9 @@ class Strew:
         self.calls.strew_bytes_free(made)
         return content
 
-    def filled(self, call: str, kind: Any, count: int, *arguments: Any, each: int = 1) -> list[Any]:
+    def filled(self, call: str, kind: Any, count: int, *arguments: Any) -> list[Any]:
         buffer = (kind * max(count, 1))()
-        capacity = ctypes.c_size_t(count // each)
-        assert getattr(self.calls, call)(*arguments, buffer, capacity) == 0, self.error()
+        assert getattr(self.calls, call)(*arguments, buffer, ctypes.c_size_t(count)) == 0, self.error()
         return list(buffer[:count])
 
 
@@ -108,9 +107,9 @@ def same_words(strew: Strew, content: bytes) -> None:
 
 def same_points(strew: Strew, plan: ctypes.c_void_p, document: dict[str, Any], kind: Kind) -> None:
     rows, count, each = document["points"], len(document["points"]), len(kind.axes)
-    at = strew.filled("strew_plan_fill_coordinates", ctypes.c_double, each * count, plan, each=each)
+    at = strew.filled("strew_plan_fill_coordinates", ctypes.c_double, each * count, plan)
     assert at == [row[axis] for row in rows for axis in kind.axes]
-    ids = strew.filled("strew_plan_fill_ids", ctypes.c_int64, each * count, plan, each=each)
+    ids = strew.filled("strew_plan_fill_ids", ctypes.c_int64, each * count, plan)
     assert ids == [int(part) for row in rows for part in row["id"].split(":")]
     for column in json.loads(strew.bytes("strew_plan_columns", plan)):
         name, expected = column["name"], [row.get(column["name"]) for row in rows]

@@ -6,7 +6,7 @@ import { open as opened } from "./local.js";
 
 export * from "./index.js";
 
-/** Loads the module and the default table from the code; other tables are addresses or bytes. */
+/** Loads both from the code; other tables are addresses or bytes. @type {typeof import("./index.js").open} */
 export async function open({ tables, wasm } = {}) {
     return opened({ wasm: wasm ?? (await unpacked(module)), tables: tables ?? [await unpacked(table)] });
 }

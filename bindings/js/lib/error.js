@@ -1,12 +1,9 @@
 // The errors of the package, in the words of the REST API.
+/** @import { Fault } from "./index.js" */
 
-/** A query that has no answer. */
+/** A query that has no answer: see index.d.ts. */
 export class StrewError extends Error {
-    /**
-     * @param {string} message the words of REST
-     * @param {string} kind as in REST's problem types: invalid-query, too-many-points, …
-     * @param {object[]} faults everything that is wrong: field, value, detail, allowed
-     */
+    /** @param {string} message @param {string} kind @param {Fault[]} faults */
     constructor(message, kind = "", faults = []) {
         super(message);
         this.name = "StrewError";
@@ -16,13 +13,13 @@ export class StrewError extends Error {
 }
 
 /** What is wrong with some values, in the words of REST. */
-export function invalid(faults) {
-    const words = ({ field, value, detail, allowed }) =>
+export function invalid(/** @type {Fault[]} */ faults) {
+    const words = (/** @type {Fault} */ { field, value, detail, allowed }) =>
         `\`${field}\`${value === null ? "" : ` = \`${value}\``}: ${detail}; allowed: ${allowed}`;
     return new StrewError(faults.map(words).join("; "), "invalid-query", faults);
 }
 
-/** What is wrong with one value. */
+/** One wrong value. @type {(field: string, value: string | null, detail: string, allowed: string) => StrewError} */
 export const fault = (field, value, detail, allowed) => invalid([{ field, value, detail, allowed }]);
 
 /** A daemon that cannot be reached, or whose answer broke off. */

@@ -1,6 +1,6 @@
 // Fields from arrays: pixels as JSON has them.
 
-function base64(bytes) {
+function base64(/** @type {Uint8Array} */ bytes) {
     let text = "";
     for (let at = 0; at < bytes.length; at += 0x8000) text += String.fromCharCode(...bytes.subarray(at, at + 0x8000));
     return btoa(text);
@@ -8,7 +8,7 @@ function base64(bytes) {
 
 /**
  * Pixels, the terrain of `height` and `slope` fields: rows from the top, where y is greatest. `where` has `bbox`,
- * `edges`, `filter` and the other members of JSON's pixels.
+ * `edges`, `filter` and the other members of JSON's pixels. @type {typeof import("./index.js").pixels}
  */
 export function pixels(values, width, height, where = {}) {
     if (values.length !== width * height) {
@@ -21,7 +21,7 @@ export function pixels(values, width, height, where = {}) {
     return { f32: base64(bytes), width, height, ...where };
 }
 
-/** A field of an array: shares of the density from 0 to 1; of a Uint8Array or ImageData's bytes, 255 is 1. */
+/** A field of shares of the density, 0 to 1; of bytes, 255 is 1. @type {typeof import("./index.js").raster} */
 export function raster(values, width, height, where = {}) {
     const isBytes = values instanceof Uint8Array || values instanceof Uint8ClampedArray;
     return { raster: pixels(isBytes ? Float32Array.from(values, (v) => v / 255) : values, width, height, where) };

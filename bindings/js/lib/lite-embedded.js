@@ -6,7 +6,7 @@ import { open as opened } from "./lite.js";
 
 export * from "./lite.js";
 
-/** Loads the module and its table from the code. */
+/** Loads the module and its table from the code. @type {import("./types.js").OpenLite} */
 export async function open({ table, wasm } = {}) {
     return opened({ wasm: wasm ?? (await unpacked(module)), table: table ?? (await unpacked(file)) });
 }

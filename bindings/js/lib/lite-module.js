@@ -1,11 +1,13 @@
 // The small WebAssembly module, the crate in `lite/`: its calls and its memory.
 
-import { StrewError } from "./error.js";
+import { fault } from "./error.js";
 import { Held } from "./held.js";
+/** @import { LiteCall, LiteCalls, LiteSet } from "./types.js" */
+/** @import { SpacePoint } from "./index.js" */
 
 // The module writes numbers of its errors as their bits.
 const BITS = /#([0-9a-f]{16})/g;
-const decimal = (_, bits) => {
+const decimal = (/** @type {string} */ _, /** @type {string} */ bits) => {
     const value = new DataView(BigUint64Array.of(BigInt(`0x${bits}`)).buffer).getFloat64(0, true);
     const size = Math.abs(value);
     return size === 0 || (1e-5 <= size && size < 1e16) ? `${value}` : value.toExponential().replace("+", "");
@@ -19,12 +21,12 @@ export class LiteModule {
     /** Its plans, by their owners. */
     plans = new Held((plan) => this.calls.free_plan(plan));
 
-    constructor(instance) {
-        this.calls = instance.exports;
+    constructor(/** @type {WebAssembly.Instance} */ { exports }) {
+        this.calls = /** @type {LiteCalls} */ (exports);
     }
 
     /** Writes the input of the next call: numbers, then a text or bytes. */
-    write(numbers, content) {
+    write(/** @type {number[]} */ numbers, /** @type {string | Uint8Array} */ content) {
         const bytes = typeof content === "string" ? ENCODER.encode(content) : content;
         const at = this.calls.input(8 * numbers.length + bytes.length) >>> 0;
         const view = new DataView(this.calls.memory.buffer);
@@ -32,15 +34,16 @@ export class LiteModule {
         new Uint8Array(this.calls.memory.buffer, at + 8 * numbers.length, bytes.length).set(bytes);
     }
 
-    /** Calls a function that returns −1 if it fails; `field` is what may be wrong with the query. */
+    /**
+     * Calls a function that returns −1 if it fails; `field` is what may be wrong with the query.
+     * @type {(name: LiteCall, field: string, ...values: (number | bigint)[]) => number}
+     */
     call(name, field, ...values) {
         const result = this.calls[name](...values);
         if (result !== -1) return result;
         const [part, value, problem, allowed] = this.texts().map((words) => words.replace(BITS, decimal));
         const detail = problem || `${part} is ${value}`;
-        throw new StrewError(`\`${field}\`: ${detail}; allowed: ${allowed}`, "invalid-query", [
-            { field, value, detail, allowed },
-        ]);
+        throw fault(field, value, detail, allowed);
     }
 
     /** A copy of the output, which is freed. */
@@ -57,18 +60,17 @@ export class LiteModule {
     }
 
     /** The points of an output, as objects. */
-    points(count, { attributes, names }, hasDistance) {
+    points(/** @type {number} */ count, /** @type {LiteSet} */ { attributes, names }, hasDistance = false) {
         const view = new DataView(this.output());
         const each = 8 * (5 + attributes.length);
         return Array.from({ length: count }, (_, i) => {
-            const number = (k) => view.getFloat64(i * each + 8 * k, true);
-            const integer = (k) => view.getBigInt64(i * each + 8 * k, true);
+            const number = (/** @type {number} */ k) => view.getFloat64(i * each + 8 * k, true);
+            const integer = (/** @type {number} */ k) => view.getBigInt64(i * each + 8 * k, true);
             const point = { id: `${integer(0)}:${integer(1)}`, x: number(2), y: number(3) };
-            if (hasDistance) point.distance = number(4);
-            attributes.forEach((name, k) => {
-                point[name] = name === "variant" ? names[number(5 + k)] : number(5 + k);
-            });
-            return point;
+            if (hasDistance) Object.assign(point, { distance: number(4) });
+            const value = (/** @type {string} */ name, k = 0) => (name === "variant" ? names[number(k)] : number(k));
+            for (const [k, name] of attributes.entries()) Object.assign(point, { [name]: value(name, 5 + k) });
+            return /** @type {SpacePoint} */ (point);
         });
     }
 }

@@ -1,20 +1,27 @@
 // The queries of strew/lite: the members of REST's JSON that it knows, checked, as numbers for its module.
 
 import { fault, invalid } from "./error.js";
-import { text } from "./query.js";
+import { isList, isObject, text } from "./query.js";
+/** @import { Fault } from "./index.js" */
+/** @import { Body, LiteArea } from "./types.js" */
 
 const MOST = 2n ** 64n - 1n;
+/** @type {("spacing" | "density" | "min_distance")[]} */
 const AMOUNTS = ["spacing", "density", "min_distance"];
 const CELL = 2 ** 52;
 
 /** Why a value is not valid. */
 class Wrong {
-    constructor(detail) {
+    constructor(/** @type {string} */ detail) {
         this.detail = detail;
     }
 }
 
 const OUT_OF_RANGE = new Wrong("out of range");
+/** @typedef {{ call: LiteArea, values: (number | bigint)[], reach: number }} Area */
+/** @template Valid @typedef {{ allowed: string, read: (value: unknown) => Valid | Wrong }} Rule */
+
+/** @type {(least: number, most: number, shown?: number | string) => Rule<number>} */
 const number = (least, most, shown = most) => ({
     allowed: `a number from ${least} to ${shown}`,
     read: (value) => {
@@ -22,23 +29,26 @@ const number = (least, most, shown = most) => ({
         return value >= least && value <= most ? value : OUT_OF_RANGE;
     },
 });
+/** @type {(least: number, most: number | bigint) => Rule<bigint>} */
 const integer = (least, most) => ({
     allowed: `an integer from ${least} to ${most}`,
     read: (value) => {
         const isText = typeof value === "string" && /^-?\d+$/.test(value);
         const isWhole = typeof value === "bigint" || Number.isInteger(value) || isText;
         if (!isWhole) return new Wrong("must be an integer");
-        return BigInt(value) >= BigInt(least) && BigInt(value) <= BigInt(most) ? BigInt(value) : OUT_OF_RANGE;
+        const whole = BigInt(/** @type {string | number | bigint} */ (value));
+        return whole >= least && whole <= most ? whole : OUT_OF_RANGE;
     },
 });
+/** @type {(count: number, allowed: string, test?: (list: number[]) => boolean) => Rule<number[]>} */
 const numbers = (count, allowed, test = () => true) => ({
     allowed,
     read: (value) => {
         if (!value || typeof value !== "object" || !("length" in value)) return new Wrong(`must be ${count} numbers`);
-        const list = Array.from(value);
+        const list = Array.from(/** @type {ArrayLike<number>} */ (value));
         if (list.length !== count) return new Wrong(`expected ${count} numbers, got ${list.length}`);
-        const odd = list.find((part) => typeof part !== "number" || !Number.isFinite(part));
-        if (odd !== undefined || list.includes(undefined)) return new Wrong(`\`${odd}\` is not a finite number`);
+        const odd = list.findIndex((part) => !Number.isFinite(part));
+        if (odd >= 0) return new Wrong(`\`${list[odd]}\` is not a finite number`);
         return test(list) ? list : OUT_OF_RANGE;
     },
 });
@@ -50,49 +60,48 @@ const KNOWN = {
     seed: integer(0, MOST),
     warp: {
         allowed: "off, on, or a number from 0 to 2",
-        read: (value) => ({ off: 0, on: 1 })[value] ?? number(0, 2).read(value),
+        read: (/** @type {unknown} */ value) => number(0, 2).read(value === "off" ? 0 : value === "on" ? 1 : value),
     },
     keep: number(1e-6, 1),
     settle: integer(0, 4),
     lod: number(1e-6, 1),
     attributes: {
         allowed: "angle, scale, variant, rank, u1 to u16",
-        read: (value) => {
+        read: (/** @type {unknown} */ value) => {
             const list = typeof value === "string" ? value.split(",").map((name) => name.trim()) : value;
-            const isKnown = (name) => /^(angle|scale|variant|rank|u([1-9]|1[0-6]))$/.test(name);
             if (!Array.isArray(list)) return new Wrong("must be names");
-            const odd = list.find((name) => !isKnown(name));
-            return odd === undefined ? list : new Wrong(`unknown attribute \`${odd}\``);
+            const odd = list.findIndex((name) => !/^(angle|scale|variant|rank|u([1-9]|1[0-6]))$/.test(name));
+            return odd < 0 ? list : new Wrong(`unknown attribute \`${list[odd]}\``);
         },
     },
-    scale_range: numbers(
-        2,
-        "two numbers min,max with 0 <= min <= max <= 1e9",
-        ([min, max]) => 0 <= min && min <= max && max <= 1e9,
-    ),
+    scale_range: numbers(2, "two numbers min,max with 0 <= min <= max <= 1e9", ([min, max]) => {
+        return 0 <= min && min <= max && max <= 1e9;
+    }),
     variants: {
         allowed: "names with their weights, numbers from 1e-9 to 1e9",
-        read: (value) => {
-            if (!value || typeof value !== "object" || Array.isArray(value)) return new Wrong("must be an object");
-            const entries = Object.entries(value).sort(([a], [b]) => (a < b ? -1 : 1));
+        read: (/** @type {unknown} */ value) => {
+            if (!isObject(value)) return new Wrong("must be an object");
+            const weights = /** @type {Record<string, number>} */ (value);
+            const entries = Object.entries(weights).sort(([a], [b]) => (a < b ? -1 : 1));
             const odd = entries.find(([, weight]) => number(1e-9, 1e9).read(weight) instanceof Wrong);
             return odd ? new Wrong(`the weight of ${odd[0]} is not valid`) : entries;
         },
     },
 };
-/** The table of queries that name none, the same everywhere. */
+/** The table of queries that name none, the same everywhere. @type {Record<string, string>} */
 const USUAL = { profile: "blue", alpha: "(5-sqrt(3))/2", map: "m" };
 
 /** The parameters that name the open table, and those that a query must have so that it means this one. */
-export function naming(table) {
+export function naming(/** @type {Record<string, string>} */ table) {
     const odd = Object.keys(USUAL).filter((name) => table[name] !== USUAL[name]);
-    const named = ([name, own]) => {
+    /** @type {Record<string, Rule<unknown>>} */
+    const known = { ...KNOWN };
+    for (const [name, own] of Object.entries(table)) {
         const allowed = `${name}: "${own}", or open({ table }) with another file, as of the package strew-tables`;
-        const read = (value) => (String(value) === own ? own : new Wrong("is not that of the open table"));
-        return [name, { allowed, read }];
-    };
-    const known = Object.fromEntries(Object.entries(table).map(named));
-    return { known: { ...KNOWN, ...known }, needed: odd.length ? new Set([...odd, "map"]) : new Set() };
+        const wrong = new Wrong("is not that of the open table");
+        known[name] = { allowed, read: (value) => (String(value) === own ? own : wrong) };
+    }
+    return { known, needed: new Set(odd.length ? [...odd, "map"] : []) };
 }
 
 const SEARCH = {
@@ -115,17 +124,19 @@ const CHUNK = numbers(
 
 /** What is wrong with a query: all of it. */
 class Faults {
+    /** @type {Fault[]} */
     #all = [];
 
+    /** @type {(field: string, value: unknown, detail: string, allowed: string) => void} */
     add(field, value, detail, allowed) {
         this.#all.push({ field, value: value === undefined ? null : text(value), detail, allowed });
     }
 
+    /** @type {<Valid>(field: string, value: unknown, rule: Rule<Valid>) => Valid | undefined} */
     read(field, value, { allowed, read }) {
         const valid = read(value);
         if (!(valid instanceof Wrong)) return valid;
         this.add(field, value, valid.detail, allowed);
-        return undefined;
     }
 
     check() {
@@ -133,43 +144,51 @@ class Faults {
     }
 }
 
-/** A region as a call of the module with its numbers. */
+/** A region as a call of the module with its numbers. @type {(region: unknown, faults: Faults) => Area | undefined} */
 function area(region, faults) {
-    const [shape, ...more] = Object.keys(region ?? {});
-    const value = region?.[shape];
+    const [[shape, value] = [], ...more] = isObject(region) ? Object.entries(region) : [];
     const field = `region.${shape}`;
     if (!more.length && shape === "bbox") {
         const values = faults.read(field, value, BBOX) ?? [];
         return { call: "within_box", values, reach: Math.max(...values.map(Math.abs)) };
     }
     if (!more.length && shape === "circle") {
-        const list = value?.center ? [...value.center, value.radius] : value;
+        const list = isObject(value) && isList(value.center) ? [...Array.from(value.center), value.radius] : value;
         const values = faults.read(field, list, CIRCLE) ?? [];
         const [x, y, radius] = values;
         return { call: "within_circle", values, reach: Math.max(Math.abs(x), Math.abs(y)) + radius };
     }
     if (!more.length && shape === "chunk") {
-        const list = value && "size" in value ? [value.size, value.x, value.y] : value;
+        const list = isObject(value) && "size" in value ? [value.size, value.x, value.y] : value;
         const [size, x, y] = faults.read(field, list, CHUNK) ?? [1, 0, 0];
         return { call: "chunk", values: [size, BigInt(x), BigInt(y)], reach: size };
     }
     faults.add("region", region, "is not in strew/lite", "one of bbox, chunk, circle");
-    return undefined;
 }
 
-/** A checked query: the numbers of its set, which have a `key`, its region, and the place of a search. */
-export function read({ region, ...members }, { known: all, needed }, search = {}) {
-    const [faults, is] = [new Faults(), {}];
-    for (const [values, known] of [[members, all], [search, SEARCH]]) {
+/** @typedef {typeof KNOWN & typeof SEARCH} Rules */
+/** @typedef {{ [Name in keyof Rules]?: Rules[Name] extends Rule<infer Valid> ? Valid : never }} Valid */
+
+/**
+ * A checked query: the numbers of its set, which have a `key`, its region, and the place of a search.
+ * @param {Body} query @param {ReturnType<typeof naming>} names @param {Body} search
+ */
+export function read({ region, ...members }, { known, needed }, search = {}) {
+    const faults = new Faults();
+    /** @type {Valid} */
+    const is = {};
+    const check = (/** @type {Body} */ values, /** @type {typeof known} */ rules) => {
         for (const [name, value] of Object.entries(values)) {
             if (value === undefined && name !== "at") continue;
-            if (Object.hasOwn(known, name)) is[name] = faults.read(name, value, known[name]);
-            else faults.add(name, value, "no such parameter in strew/lite", Object.keys(known).join(", "));
+            if (Object.hasOwn(rules, name)) Object.assign(is, { [name]: faults.read(name, value, rules[name]) });
+            else faults.add(name, value, "no such parameter in strew/lite", Object.keys(rules).join(", "));
         }
-    }
+    };
+    check(members, known);
+    check(search, SEARCH);
     for (const name of needed) {
         const usual = `is missing: without it the query means the table of ${name} ${USUAL[name]}, which is not open`;
-        if (members[name] === undefined) faults.add(name, undefined, usual, all[name].allowed);
+        if (members[name] === undefined) faults.add(name, undefined, usual, known[name].allowed);
     }
     const amounts = AMOUNTS.filter((name) => members[name] !== undefined);
     if (amounts.length !== 1) {
@@ -180,7 +199,7 @@ export function read({ region, ...members }, { known: all, needed }, search = {}
     if (attributes.includes("variant") && !variants.length) {
         faults.add("variants", undefined, "is missing", KNOWN.variants.allowed);
     }
-    for (const [needed, name] of [["variants", "variant"], ["scale_range", "scale"]]) {
+    for (const [needed, name] of /** @type {const} */ ([["variants", "variant"], ["scale_range", "scale"]])) {
         if (is[needed] && !attributes.includes(name)) {
             faults.add(needed, members[needed], `is not used`, `beside the attribute ${name}`);
         }
@@ -189,19 +208,19 @@ export function read({ region, ...members }, { known: all, needed }, search = {}
     faults.check();
     const { seed = 0n, warp = NaN, keep = 1, settle = -1, lod = 1, scale_range: range = [0, 1] } = is;
     const [amount] = amounts;
-    const set = [AMOUNTS.indexOf(amount), is[amount], BigInt.asIntN(64, seed), warp, keep, Number(settle), lod];
+    const size = /** @type {number} */ (is[amount]);
+    const set = [AMOUNTS.indexOf(amount), size, BigInt.asIntN(64, seed), warp, keep, Number(settle), lod];
     const key = text([set.map(String), attributes, range, variants]);
     const k = is.k === undefined ? undefined : Number(is.k);
-    const least = is.min_distance;
-    const [own, where] = [{ amount, attributes, least, key, numbers: set, range, variants }, { at: is.at, k, radius: is.radius }];
-    return { ...own, ...where, region: place };
+    const { at, radius, min_distance: least } = is;
+    return { amount, attributes, least, key, numbers: set, range, variants, at, k, radius, region: place };
 }
 
 // f64 coordinates keep a least distance out to this many times it (strew-core's LeastDistance::RANGE).
 const RANGE = 2 ** 30;
 
 /** Refuses a least distance that coordinates within ±`reach` do not keep. */
-export function checkReach(distance, reach) {
+export function checkReach(/** @type {number | undefined} */ distance, /** @type {number} */ reach) {
     if (distance === undefined || reach <= RANGE * distance) return;
     const near = RANGE * distance;
     const detail = `coordinates up to ${reach} are rounded too coarsely to keep it: it holds within ±${near}`;

@@ -2,9 +2,11 @@
 
 import { StrewError } from "./error.js";
 import { compile, content, isAddress } from "./files.js";
+import { HeldPlan } from "./held.js";
 import { Module } from "./module.js";
 import { Source, rowsOf } from "./points.js";
-import { PLANE, address, integers } from "./query.js";
+import { PLANE, address, integers, numberOf } from "./query.js";
+/** @import { Backend, Body, Call, Content, Dimension, Further, Kind, Plan } from "./types.js" */
 
 /** The table that answers by default, and by default the only one that is loaded. */
 export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
@@ -15,85 +17,51 @@ export const SPACE_TABLES = ["space-blue-5-sqrt3-over-2-r16.strew"];
 /** The bytes of a point as C has it: an id of three integers, three coordinates and a distance. */
 const POINT_BYTES = 56;
 
-/** This page or process. */
-export class Local extends Source {
-    isLocal = true;
+/** This page or process. @implements {Backend<"here">} */
+export class Local {
+    side = /** @type {const} */ ("here");
     #module;
     #library;
 
-    constructor(module, library) {
-        super();
+    constructor(/** @type {Module} */ module, /** @type {number} */ library) {
         this.#module = module;
         this.#library = library;
     }
 
-    plan(query, _, dimension = PLANE) {
-        const module = this.#module;
-        return module.scoped((room) => {
-            const out = room(4);
-            module.call("strew_plan_query", this.#library, dimension.axes.length, module.text(room, query), out);
-            return new Plan(module, module.pointer(out), dimension);
-        });
+    plan(/** @type {string} */ query, /** @type {unknown} */ _, dimension = PLANE) {
+        const plan = this.#module.handle("strew_plan_query", this.#library, dimension.axes.length, query);
+        return new LocalPlan(this.#module, plan, dimension);
     }
 
-    nearest(values, dimension) {
-        const module = this.#module;
-        return module.scoped((room) => {
-            const set = module.text(room, address(values));
-            return module.json("strew_nearest", room, this.#library, dimension.axes.length, set, 0, 0, 0);
-        });
+    nearest(/** @type {Body} */ values, /** @type {Dimension} */ { axes }) {
+        return this.#module.json("strew_nearest", this.#library, axes.length, address(values), 0, 0, 0);
     }
 
-    point(id, values, dimension) {
-        const module = this.#module;
-        return module.scoped((room) => {
-            const parts = integers(id, dimension);
-            const set = module.text(room, address(values));
-            const at = room(8 * parts.length);
-            new BigInt64Array(module.memory, at, parts.length).set(parts);
-            return module.json("strew_point_by_id", room, this.#library, parts.length, set, at, room(POINT_BYTES));
-        });
+    point(/** @type {string} */ id, /** @type {Body} */ values, /** @type {Dimension} */ dimension) {
+        const parts = BigInt64Array.from(integers(id, dimension));
+        const room = new Uint8Array(POINT_BYTES);
+        return this.#module.json("strew_point_by_id", this.#library, parts.length, address(values), parts, room);
     }
 
-    holdField(body) {
-        const module = this.#module;
-        const held = module.scoped((room) =>
-            module.bytes("strew_library_hold_field", room, this.#library, module.text(room, body)),
-        );
-        return new TextDecoder().decode(held);
+    holdField(/** @type {string} */ body) {
+        return new TextDecoder().decode(this.#module.bytes("strew_library_hold_field", this.#library, body));
     }
 }
 
-/** A planned query. */
-class Plan {
+/** A planned query. @implements {Plan<"here">} */
+class LocalPlan extends HeldPlan {
     #module;
-    #plan;
     #axes;
 
-    constructor(module, plan, dimension) {
+    constructor(/** @type {Module} */ module, /** @type {number} */ plan, /** @type {Dimension} */ { axes }) {
+        super(module.plans, plan);
         this.#module = module;
-        this.#plan = plan;
-        this.#axes = dimension.axes.length;
-        module.plans.add(this, plan);
-    }
-
-    get isFree() {
-        return !this.#plan;
-    }
-
-    /** Frees the memory. The plan has no points afterwards. */
-    free() {
-        if (this.#plan) this.#module.plans.remove(this, this.#plan);
-        this.#plan = 0;
+        this.#axes = axes.length;
     }
 
     count() {
-        return this.#module.scoped((room) => {
-            const out = room(8);
-            this.#module.call("strew_plan_count", this.#plan, out);
-            const count = new DataView(this.#module.memory).getBigUint64(out, true);
-            return count <= BigInt(Number.MAX_SAFE_INTEGER) ? Number(count) : count;
-        });
+        const fill = (/** @type {number} */ at) => this.#module.call("strew_plan_count", this.place, at);
+        return numberOf(this.#module.filled(BigUint64Array, 1, fill)[0]);
     }
 
     /** The number of points, for a buffer. The memory of a module has room for fewer than 2²⁸. */
@@ -104,14 +72,13 @@ class Plan {
         throw new StrewError(`${words}: request a smaller region, chunks, or parts by split`, "too-many-points");
     }
 
-    /** An array with `each` numbers per point. */
+    /**
+     * An array with `each` numbers per point.
+     * @type {<Made>(kind: Kind<Made>, each: number, call: Call, ...more: string[]) => Made}
+     */
     #filled(kind, each, call, ...more) {
-        const module = this.#module;
-        const few = this.#few();
-        return module.scoped((room) => {
-            const values = more.map((value) => (typeof value === "string" ? module.text(room, value) : value));
-            return module.filled(kind, each * few, room, (at) => module.call(call, this.#plan, ...values, at, few));
-        });
+        const numbers = each * this.#few();
+        return this.#module.filled(kind, numbers, (at) => this.#module.call(call, this.place, ...more, at, numbers));
     }
 
     coordinates() {
@@ -119,32 +86,30 @@ class Plan {
     }
 
     offsets() {
-        const module = this.#module;
-        const [count, axes] = [this.#few(), this.#axes];
+        const [module, count, axes] = [this.#module, this.#few(), this.#axes];
         return module.scoped((room) => {
             const from = room(8 * axes);
-            const fill = (at) => module.call("strew_plan_fill_coordinates_f32", this.#plan, at, count, from);
-            const at = module.filled(Float32Array, axes * count, room, fill);
+            const fill = (/** @type {number} */ at) =>
+                module.call("strew_plan_fill_coordinates_f32", this.place, at, axes * count, from);
+            const at = module.filled(Float32Array, axes * count, fill);
             return { at, origin: [...new Float64Array(module.memory, from, axes)] };
         });
     }
 
     origin() {
-        return this.#module.scoped((room) => {
-            const out = room(8 * this.#axes);
-            this.#module.call("strew_plan_origin", this.#plan, out);
-            return [...new Float64Array(this.#module.memory, out, this.#axes)];
-        });
+        const fill = (/** @type {number} */ at) => this.#module.call("strew_plan_origin", this.place, at);
+        return [...this.#module.filled(Float64Array, this.#axes, fill)];
     }
 
     columns() {
         const ids = this.#filled(BigInt64Array, this.#axes, "strew_plan_fill_ids");
-        const listed = this.#module.scoped((room) => this.#module.json("strew_plan_columns", room, this.#plan));
-        const further = listed.map(({ name, names }) => {
-            const [kind, call] = names ? [Int32Array, "codes"] : [Float64Array, "numbers"];
-            return [name, { names, values: this.#filled(kind, 1, `strew_plan_fill_${call}`, name) }];
-        });
-        return { ids, at: this.coordinates(), further: new Map(further) };
+        /** @type {Further} */
+        const further = new Map();
+        for (const { name, names } of this.#module.json("strew_plan_columns", this.place)) {
+            if (names) further.set(name, { names, values: this.#filled(Int32Array, 1, "strew_plan_fill_codes", name) });
+            else further.set(name, { names, values: this.#filled(Float64Array, 1, "strew_plan_fill_numbers", name) });
+        }
+        return { ids, at: this.coordinates(), further };
     }
 
     rows() {
@@ -152,20 +117,17 @@ class Plan {
     }
 
     resolved() {
-        return this.#module.scoped((room) => this.#module.exact("strew_plan_resolved", room, this.#plan));
+        return this.#module.json("strew_plan_resolved", this.place);
     }
 
-    split(parts) {
-        return this.#module.scoped((room) => this.#module.exact("strew_plan_split", room, this.#plan, parts));
+    split(/** @type {number} */ parts) {
+        return this.#module.json("strew_plan_split", this.place, parts);
     }
 
-    document(options) {
-        const on = (value) => (typeof value === "boolean" ? (value ? "on" : "off") : value);
+    document(/** @type {Body} */ options) {
+        const on = (/** @type {unknown} */ value) => (typeof value === "boolean" ? (value ? "on" : "off") : value);
         const wanted = Object.entries(options).map(([name, value]) => `${name}=${on(value)}`);
-        const module = this.#module;
-        return module.scoped((room) =>
-            module.bytes("strew_plan_document", room, this.#plan, module.text(room, wanted.join("&"))),
-        );
+        return this.#module.bytes("strew_plan_document", this.place, wanted.join("&"));
     }
 }
 
@@ -181,7 +143,7 @@ const TABLES = new Map([
 ]);
 
 /** A table by its name, or its address or bytes. */
-function table(what) {
+function table(/** @type {Content} */ what) {
     if (typeof what !== "string" || isAddress(what)) return what;
     const known = TABLES.get(what);
     if (known) return known();
@@ -193,7 +155,7 @@ function table(what) {
     );
 }
 
-/** Loads the module and tables. */
+/** Loads the module and tables. @type {typeof import("./index.js").open} */
 export async function open({ tables = DEFAULT_TABLES, wasm } = {}) {
     const [compiled, ...files] = await Promise.all([
         compile(wasm ?? WASM(), "wasm"),
@@ -201,20 +163,9 @@ export async function open({ tables = DEFAULT_TABLES, wasm } = {}) {
     ]);
     const module = new Module(await WebAssembly.instantiate(compiled, {}));
     const library = module.scoped((room) => {
-        const places = files.map((file) => {
-            const at = room(file.length);
-            new Uint8Array(module.memory, at, file.length).set(file);
-            return at;
-        });
-        const listed = (numbers) => {
-            const at = room(4 * numbers.length);
-            new Uint32Array(module.memory, at, numbers.length).set(numbers);
-            return at;
-        };
-        const lengths = listed(files.map((file) => file.length));
-        const out = room(4);
-        module.call("strew_library_of_tables", listed(places), lengths, files.length, out);
-        return module.pointer(out);
+        const places = Uint32Array.from(files, (file) => module.copied(room, file));
+        const lengths = Uint32Array.from(files, (file) => file.length);
+        return module.handle("strew_library_of_tables", places, lengths, files.length);
     });
-    return new Local(module, library);
+    return new Source(new Local(module, library));
 }

@@ -1,11 +1,14 @@
-// Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
+// Sets of points, over any source: this page, or a daemon, whose answers are promises. Public members are documented in
+// index.d.ts.
 
 import { KINDS, WINDOW } from "./parameters.js";
 import { OF_ANSWERS, PLANE, SPACE, body, checked, isObject, text } from "./query.js";
 import { StrewError, fault } from "./error.js";
+/** @import { Answer, NameColumn, Neighbors, SpacePoint } from "./index.js" */
+/** @import { Backend, Body, Column, ColumnName, Columns, Dimension, Further, Offsets, Plan, Side } from "./types.js" */
 
 /** Rows of coordinates with further columns. */
-export function rowsOf({ at, origin }, further) {
+export function rowsOf(/** @type {Offsets} */ { at, origin }, /** @type {Further} */ further) {
     const columns = ["x", "y", ...further.keys()];
     const [each, count] = [columns.length, at.length / 2];
     const values = new Float32Array(each * count);
@@ -18,94 +21,92 @@ export function rowsOf({ at, origin }, further) {
     return { columns, values, names: Object.fromEntries(named), origin };
 }
 
-/** Applies a function to a value, or to that of a promise once it is there. */
-const after = (value, use) => (value instanceof Promise ? value.then(use) : use(value));
+/**
+ * Applies a function to a value, or to that of a promise once it is there.
+ * @type {<At extends Side, T, U>(value: Answer<At, T>, use: (value: T) => U | Answer<At, U>) => Answer<At, U>}
+ */
+const after = (/** @type {any} */ value, use) =>
+    /** @type {any} No type tells which of them it is. */ (value instanceof Promise ? value.then(use) : use(value));
 
-/** Where points come from. */
+/** @template {Side} Where */
 export class Source {
-    /** Whether points are made in this page or process: queries are checked at once, answers are no promises. */
-    isLocal = false;
+    constructor(/** @type {Backend<Where>} */ backend) {
+        this.backend = backend;
+    }
 
-    /** The points of a query by its keywords: `points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7 })`. */
-    points(keywords) {
+    points(/** @type {object} */ keywords) {
         return this.query(body(keywords));
     }
 
-    /** The points of a query in JSON, the body of `POST /v1/points:query`. */
-    query(query) {
-        return PointSet.of(this, query);
+    query(/** @type {object} */ query) {
+        return new PointSet(this.backend, query);
     }
 
-    /** Points in space: `space.points({ ball: [0, 0, 0, 9], spacing: 1 })`. */
     get space() {
-        return new Space(this);
+        return new Space(this.backend);
     }
 }
 
-/** Points in space, over a source. */
+/** @template {Side} Where */
 export class Space {
-    #source;
+    #backend;
 
-    constructor(source) {
-        this.#source = source;
+    constructor(/** @type {Backend<Where>} */ backend) {
+        this.#backend = backend;
     }
 
-    /** The points of a query in space by its keywords. */
-    points(keywords) {
+    points(/** @type {object} */ keywords) {
         return this.query(body(keywords));
     }
 
-    /** The points of a query in JSON, the body of `POST /v1/space/points`. */
-    query(query) {
-        return SpaceSet.of(this.#source, query);
+    query(/** @type {object} */ query) {
+        return new SpaceSet(this.#backend, query);
     }
 }
 
-/** The points of a query, made when they are wanted: what sets of the plane and of space have in common. */
+/** What sets of the plane and of space have in common. @template {Side} Where */
 class Points {
-    #source;
+    #backend;
     #body;
     #dimension;
+    /** @type {Plan<Where> | undefined} */
     #plan;
+    /** @type {Answer<Where, Columns> | undefined} */
     #columns;
 
-    constructor(source, query, dimension) {
-        this.#source = source;
-        this.#body = { ...query };
+    /** @param {Backend<Where>} backend @param {object} query @param {Dimension} dimension */
+    constructor(backend, query, dimension) {
+        this.#backend = backend;
+        this.#body = { ...checked(query) };
         this.#dimension = dimension;
+        // It is checked at once where that takes no request.
+        if (backend.side === "here" && "region" in query) this.plan();
     }
 
-    /** The points of a query, which is checked at once where that takes no request. */
-    static of(source, query) {
-        const set = new this(source, checked(query));
-        if (source.isLocal && "region" in query) set.plan();
-        return set;
-    }
-
-    /** The body of `POST /v1/points:query`, in space of `POST /v1/space/points`. */
     get body() {
         return { ...this.#body };
     }
 
     /** The planned query of the set. */
     plan() {
-        const isThere = this.#plan && !this.#plan.isFree;
-        if (!isThere) this.#plan = this.#source.plan(text(this.#body), this.#body, this.#dimension);
-        return this.#plan;
+        if (this.#plan && !this.#plan.isFree) return this.#plan;
+        return (this.#plan = this.#backend.plan(text(this.#body), this.#body, this.#dimension));
     }
 
-    /** Releases the memory of the points. A set that is used afterwards makes them again. */
     free() {
         this.#plan?.free();
         this.#plan = this.#columns = undefined;
     }
 
-    /** The exact number of points: a number, or a bigint from 2⁵³ on. */
+    // Where the platform lacks it, the name is "undefined".
+    [Symbol.dispose]() {
+        this.free();
+    }
+
     count() {
         return this.plan().count();
     }
 
-    /** The query with everything filled in. */
     resolved() {
         return this.plan().resolved();
     }
@@ -115,35 +116,27 @@ class Points {
         return this.#columns ? after(this.#columns, (columns) => columns.at) : this.plan().coordinates();
     }
 
-    /** The place that coordinates are relative to: the corner of a chunk, else the origin of the world. */
     origin() {
         return this.plan().origin();
     }
 
-    /** The ids: two integers for each point in a BigInt64Array, `x:y` as text; in space three, `x:y:z`. */
     ids() {
         return after(this.#all(), (columns) => columns.ids);
     }
 
     #all() {
-        if (this.#columns) return this.#columns;
-        const columns = this.plan().columns();
-        this.#columns = columns;
+        const columns = (this.#columns ??= this.plan().columns());
         // After a failure the next call requests them again.
-        if (columns instanceof Promise) {
-            columns.catch(() => {
-                if (this.#columns === columns) this.#columns = undefined;
-            });
-        }
+        const forget = () => (this.#columns = this.#columns === columns ? undefined : this.#columns);
+        if (columns instanceof Promise) columns.catch(forget);
         return columns;
     }
 
-    /** The names of the columns beside ids and coordinates. */
     names() {
         return after(this.#all(), (columns) => [...columns.further.keys()]);
     }
 
-    #further(name) {
+    #further(/** @type {ColumnName} */ name) {
         return after(this.#all(), ({ further }) => {
             const column = further.get(name);
             if (column) return column;
@@ -152,146 +145,129 @@ class Points {
         });
     }
 
-    /** Numbers in a Float64Array, NaN where a layer lacks them; or a list of names, null where they are lacking. */
+    /** Numbers, or names: public types tell which. @type {(name: ColumnName) => any} */
     column(name) {
         const [axes, axis] = [this.#dimension.axes.length, [...this.#dimension.axes].indexOf(name)];
-        if (axis >= 0) {
-            const each = (at) => Float64Array.from({ length: at.length / axes }, (_, i) => at[axes * i + axis]);
-            return after(this._coordinates(), each);
-        }
-        return after(this.#further(name), ({ values, names }) =>
-            names ? Array.from(values, (code) => names[code] ?? null) : values,
-        );
+        if (axis >= 0) return after(this._coordinates(), (at) => at.filter((_, i) => i % axes === axis));
+        const named = (/** @type {Column} */ { values, names }) =>
+            names ? Array.from(values, (code) => names[code] ?? null) : values;
+        return after(this.#further(name), named);
     }
 
-    /** A column of names as indices, −1 where it is lacking: `{ codes, names }`. */
-    codes(name) {
+    codes(/** @type {NameColumn} */ name) {
         return after(this.#further(name), ({ values, names }) => {
             if (!names) throw new RangeError(`${JSON.stringify(name)} is a column of numbers`);
             return { codes: values, names };
         });
     }
 
-    #with(members) {
+    #with(/** @type {Body} */ members) {
+        /** @type {Body} */
         const query = { ...this.#body, ...members };
         for (const [name, value] of Object.entries(members)) if (value === undefined) delete query[name];
-        return this.constructor.of(this.#source, query);
+        const Same = /** @type {new (backend: Backend<Where>, query: Body) => this} */ (this.constructor);
+        return new Same(this.#backend, query);
     }
 
-    /** The same set in another region: `within({ bbox: [0, 0, 5, 5] })`. */
-    within(shape) {
+    within(/** @type {object} */ shape) {
         const { region } = body(shape);
         if (!region) throw new TypeError(`within takes one of region, ${this.#dimension.shapes.join(", ")}`);
         return this.#with({ region, ...Object.fromEntries(WINDOW.map((name) => [name, undefined])) });
     }
 
-    /** The points in at most `parts` parts of the same size, give or take one. A part's `body` can go to a worker. */
-    split(parts) {
-        const made = ({ cursor, limit }) => this.#with({ cursor, limit, offset: undefined });
+    split(/** @type {number} */ parts) {
+        const made = (/** @type {Body} */ place) => this.#with({ ...place, offset: undefined });
         return after(this.plan().split(parts), (places) => places.map(made));
     }
 
+    /** The parameters of a search in this set. @type {(more: Body) => Answer<Where, Body>} */
     #set(more) {
         const values = { ...more, ...this.#body };
         for (const name of OF_ANSWERS) delete values[name];
         const isOfRegion = "count" in values && "region" in this.#body;
         if (isOfRegion) delete values.count;
-        let ready = isOfRegion ? after(this.resolved(), ({ spacing }) => void (values.spacing = spacing)) : undefined;
+        const spaced = (/** @type {Body} */ { spacing }) => Object.assign(values, { spacing });
+        let ready = /** @type {Answer<Where, Body>} */ (isOfRegion ? after(this.resolved(), spaced) : values);
         // An address has no room for fields: it names them.
         for (const name of Object.keys(values).filter((name) => KINDS[name] === "field" && isObject(values[name]))) {
-            const hold = () => this.#source.holdField(text(values[name]));
-            ready = after(after(ready, hold), (held) => void (values[name] = held));
+            const hold = () => this.#backend.holdField(text(values[name]));
+            ready = after(after(ready, hold), (held) => Object.assign(values, { [name]: held }));
         }
-        return after(ready, () => values);
+        return ready;
     }
 
-    /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
-    nearest(at, limits = {}) {
+    nearest(/** @type {ArrayLike<number>} */ at, /** @type {Neighbors & Body} */ limits = {}) {
         const allowed = "{ k, radius }: the number of points, and how far they are at most";
         if (!isObject(limits)) throw fault("limits", text(limits), "not an object", allowed);
         const { k, radius, ...others } = limits;
         for (const name of Object.keys(others)) throw fault(name, text(others[name]) ?? null, "unknown limit", allowed);
-        return after(this.#set({ at, k, radius }), (set) => this.#source.nearest(set, this.#dimension));
+        return after(this.#set({ at, k, radius }), (set) => this.#backend.nearest(set, this.#dimension));
     }
 
-    /** The point of an id. */
-    point(id) {
-        return after(this.#set({}), (set) => this.#source.point(id, set, this.#dimension));
+    point(/** @type {string} */ id) {
+        return after(this.#set({}), (set) => this.#backend.point(id, set, this.#dimension));
     }
 
-    /** The points in a format of REST, as bytes: `document("csv", { decimals: 2 })`. */
-    document(format, options = {}) {
+    document(/** @type {string} */ format, /** @type {object} */ options = {}) {
         return this.plan().document({ format, ...options });
     }
 
-    /** The points one by one, as objects with an id, coordinates and attributes; in process only. */
     *[Symbol.iterator]() {
-        if (!this.#source.isLocal) {
+        if (this.#backend.side !== "here") {
             throw new StrewError(`a daemon's points come as columns: await points.${this.#dimension.axes}()`);
         }
-        const [ids, at, axes] = [this.ids(), this._coordinates(), [...this.#dimension.axes]];
-        const columns = this.names().map((name) => [name, this.column(name)]);
+        const here = /** @type {Points<"here">} */ (/** @type {unknown} */ (this));
+        const [ids, at, axes] = [here.ids(), here._coordinates(), [...this.#dimension.axes]];
+        const columns = here.names().map((name) => [name, here.column(name)]);
         for (let i = 0; i < at.length / axes.length; i++) {
             const first = i * axes.length;
-            const point = { id: ids.subarray(first, first + axes.length).join(":") };
-            axes.forEach((axis, k) => (point[axis] = at[first + k]));
+            const point = /** @type {SpacePoint} */ ({ id: ids.subarray(first, first + axes.length).join(":") });
+            for (const [k, axis] of axes.entries()) point[axis] = at[first + k];
             for (const [name, values] of columns) point[name] = values[i];
             yield point;
         }
     }
 }
 
-/** The points of a query of the plane. */
+/** @template {Side} Where @extends {Points<Where>} */
 export class PointSet extends Points {
-    constructor(source, query) {
-        super(source, query, PLANE);
+    constructor(/** @type {Backend<Where>} */ backend, /** @type {object} */ query) {
+        super(backend, query, PLANE);
     }
 
-    /** x and y of each point, by turns: a Float64Array. */
     xy() {
         return this._coordinates();
     }
 
-    /** The coordinates as a Float32Array, relative to an origin: `{ xy, origin }`. */
     xyF32() {
         return after(this.plan().offsets(), ({ at, origin }) => ({ xy: at, origin }));
     }
 
-    /**
-     * The points as rows of `f32`, the form of instances: `{ columns, values, names, origin }`. `values` has x and y of
-     * each point, relative to the origin, then its attributes; those of names are indices into the lists of `names`.
-     */
     rowsF32() {
         return this.plan().rows();
     }
 
-    /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */
-    chunk(size, x, y) {
+    chunk(/** @type {number} */ size, /** @type {number} */ x, /** @type {number} */ y) {
         return this.within({ chunk: [size, x, y] });
     }
 }
 
-/** The points of a query in space. */
+/** @template {Side} Where @extends {Points<Where>} */
 export class SpaceSet extends Points {
-    constructor(source, query) {
-        super(source, query, SPACE);
+    constructor(/** @type {Backend<Where>} */ backend, /** @type {object} */ query) {
+        super(backend, query, SPACE);
     }
 
-    /** x, y and z of each point, by turns: a Float64Array. */
     xyz() {
         return this._coordinates();
     }
 
-    /** The coordinates as a Float32Array, relative to an origin: `{ xyz, origin }`. */
     xyzF32() {
         return after(this.plan().offsets(), ({ at, origin }) => ({ xyz: at, origin }));
     }
 
-    /** The points of a cube of the world grid. Coordinates are relative to its corner, `origin()`. */
+    /** @param {number} size @param {number} x @param {number} y @param {number} z */
     chunk(size, x, y, z) {
         return this.within({ chunk: [size, x, y, z] });
     }
 }
-
-// For `using points = strew.points(…)`, where the platform has it.
-if (Symbol.dispose) Points.prototype[Symbol.dispose] = Points.prototype.free;

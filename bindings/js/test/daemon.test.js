@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
-import { after, before, test } from "node:test";
+import { after, test } from "node:test";
 
 import { connect } from "../lib/index.js";
 import { PLANE, SPACE } from "../lib/query.js";
@@ -16,12 +16,8 @@ const queries = (name, count) => {
     return lines.trim().split("\n");
 };
 
-let strew;
-let remote;
-before(async () => {
-    strew = await whole();
-    remote = await daemon();
-});
+const [strew, remote] = await Promise.all([whole(), daemon()]);
+const skip = !remote && "the daemon is not built";
 after(() => remote?.end());
 
 // The module makes kinds for seconds, in which an idle connection may be closed.
@@ -45,15 +41,14 @@ function sameWords(error, problem) {
 }
 
 for (const [dimension, name, count] of [[PLANE, "random_query", 1000], [SPACE, "random_query_in_space", 200]]) {
-    test(`random queries have the points of the daemon: ${dimension.axes}`, async (t) => {
-        if (!remote) return t.skip("the daemon is not built");
+    test(`random queries have the points of the daemon: ${dimension.axes}`, { skip }, async () => {
         let refused = 0;
         for (const text of queries(name, count)) {
             const response = await ask(text, dimension);
             const content = await response.text();
             let plan;
             try {
-                plan = strew.plan(text, undefined, dimension);
+                plan = strew.backend.plan(text, undefined, dimension);
             } catch (error) {
                 sameWords(error, JSON.parse(content));
                 refused++;
@@ -88,21 +83,19 @@ const WRONG_IN_SPACE = [
     { region: BOX, spacing: 1, profile: "pink" },
 ];
 
-test("wrong queries are refused with the same words", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("wrong queries are refused with the same words", { skip }, async () => {
     for (const [dimension, wrong] of [[PLANE, WRONG], [SPACE, WRONG_IN_SPACE]]) {
         for (const query of wrong) {
             const problem = await (await ask(JSON.stringify(query), dimension)).json();
             const words = (error) => sameWords(error, problem) ?? true;
-            assert.throws(() => strew.plan(JSON.stringify(query), query, dimension), words);
+            assert.throws(() => strew.backend.plan(JSON.stringify(query), query, dimension), words);
             const source = connect(remote.url);
             await assert.rejects((dimension === SPACE ? source.space : source).query(query).ids(), words);
         }
     }
 });
 
-test("columns, their names and their order are those of the package", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("columns, their names and their order are those of the package", { skip }, async () => {
     const variants = (names) => ({ attributes: ["variant", "angle"], variants: names });
     const layers = [
         { name: "trees", spacing: 2, seed: 1, ...variants({ oak: 1, birch: 1 }) },
@@ -130,15 +123,13 @@ test("columns, their names and their order are those of the package", async (t) 
     }
 });
 
-test("counts of any size are exact", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("counts of any size are exact", { skip }, async () => {
     const points = connect(remote.url).points({ bbox: [-5e8, -5e8, 5e8, 5e8], spacing: 1 });
     assert.equal(await points.count(), 1000000000097677487n);
     assert.equal((await points.split(1))[0].body.limit, 1000000000097677487n);
 });
 
-test("a daemon has the functions of the package", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("a daemon has the functions of the package", { skip }, async () => {
     const variants = { oak: 1, fir: 2 };
     const query = { bbox: [-9, -9, 20, 21], spacing: 1.5, seed: 2n ** 63n, attributes: ["angle", "variant"], variants };
     const field = { noise: { wavelength: 9 } };

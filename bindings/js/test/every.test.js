@@ -1,7 +1,7 @@
 // Every parameter, shape of field, table and format, in the module and at the daemon: the same bytes, or the same words.
 // What there is comes from the daemon's description of itself, so that nothing new is left out.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { after, test } from "node:test";
 import { inflateSync } from "node:zlib";
 
 import { connect, pixels, raster } from "../lib/index.js";
@@ -9,16 +9,10 @@ import { KINDS } from "../lib/parameters.js";
 import { text } from "../lib/query.js";
 import { daemon, whole } from "./support.js";
 
-let strew;
-let remote;
-let there;
-let api;
-before(async () => {
-    strew = await whole();
-    remote = await daemon();
-    there = remote && connect(remote.url);
-    api = remote && (await (await fetch(`${remote.url}/openapi.json`)).json());
-});
+const [strew, remote] = await Promise.all([whole(), daemon()]);
+const skip = !remote && "the daemon is not built";
+const there = remote && connect(remote.url);
+const api = remote && (await (await fetch(`${remote.url}/openapi.json`)).json());
 after(() => remote?.end());
 
 /** The bytes of a document, or the words of a refusal. */
@@ -132,8 +126,7 @@ const SHAPES = {
     curve: { curve: { of: RAMP, points: [[0, 1], [0.5, 0], [1, 1]] } },
 };
 
-test("every parameter", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("every parameter", { skip }, async () => {
     assert.deepEqual(Object.keys(QUERIES).sort(), Object.keys(KINDS).sort());
     for (const [name, queries] of Object.entries(QUERIES)) {
         for (const query of queries) {
@@ -144,12 +137,11 @@ test("every parameter", async (t) => {
     }
 });
 
-test("every shape of field", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("every shape of field", { skip }, async () => {
     const known = api.components.schemas.Field.anyOf.map(({ $ref }) => api.components.schemas[$ref.split("/").at(-1)]);
     // A field is named by its digest once both hold it.
-    const name = strew.holdField(text(RAMP));
-    assert.equal(await there.holdField(text(RAMP)), name);
+    const name = strew.backend.holdField(text(RAMP));
+    assert.equal(await there.backend.holdField(text(RAMP)), name);
     const shapes = { ...SHAPES, name: { name } };
     assert.deepEqual(Object.keys(shapes).sort(), known.map(({ required }) => required[0]).sort());
     for (const [shape, field] of Object.entries(shapes)) {
@@ -160,8 +152,7 @@ test("every shape of field", async (t) => {
     }
 });
 
-test("every table that is shipped", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("every table that is shipped", { skip }, async () => {
     for (const [root, base, few] of [["/v1", BASE, 15], ["/v1/space", BOX, 1]]) {
         const { profiles } = await (await fetch(`${remote.url}${root}/profiles`)).json();
         assert.ok(profiles.length > few);
@@ -172,8 +163,7 @@ test("every table that is shipped", async (t) => {
     }
 });
 
-test("every format", async (t) => {
-    if (!remote) return t.skip("the daemon is not built");
+test("every format", { skip }, async () => {
     const parameters = api.paths["/v1/points"].get.parameters.map(({ $ref, ...own }) =>
         $ref ? api.components.parameters[$ref.split("/").at(-1)] : own,
     );

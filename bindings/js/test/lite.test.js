@@ -1,18 +1,22 @@
 // strew/lite beside the whole package: the same bits, and words of the same form.
 import assert from "node:assert/strict";
-import { before, test } from "node:test";
+import { test } from "node:test";
 
 import { StrewError, open as openWhole } from "../lib/index.js";
 import { open as openEmbedded } from "../lib/lite-embedded.js";
 import { open } from "../lib/lite.js";
 import { ALL, whole as everything } from "./support.js";
 
-const SMALL = ["blue-5-sqrt3-over-2-s.strew"];
+const [lite, whole] = await Promise.all([open(), openWhole({ tables: ["blue-5-sqrt3-over-2-s.strew"] })]);
 
-let [lite, whole] = [];
-before(async () => {
-    [lite, whole] = await Promise.all([open(), openWhole({ tables: SMALL })]);
-});
+/** What a work returns, or the faults of its error. */
+const tried = (work) => {
+    try {
+        return work();
+    } catch ({ faults }) {
+        return faults;
+    }
+};
 
 /** Numbers of a seed, so that a failure comes again. */
 function random(seed) {
@@ -58,16 +62,9 @@ test("random queries have the bits of the whole package", () => {
         const [ours, theirs] = [lite.points(asked), whole.points(asked)];
         const shape = region(draw);
         const about = JSON.stringify({ ...asked, seed: String(asked.seed), ...shape });
-        const tried = (work) => {
-            try {
-                return work();
-            } catch (error) {
-                return error.faults.map(({ field }) => field);
-            }
-        };
         const [here, there] = [tried(() => ours.within(shape)), tried(() => theirs.within(shape))];
         if (Array.isArray(there)) {
-            assert.deepEqual(here, there, about);
+            assert.deepEqual(...[here, there].map((faults) => faults.map(({ field }) => field)), about);
             refused += 1;
             continue;
         }
@@ -101,6 +98,8 @@ test("what is wrong has its member, its value and what is allowed", () => {
         [{ spacing: 1, bbox: [0, 0, 1] }, "region.bbox"], [{ spacing: 1, bbox: [0, 0, 1, NaN] }, "region.bbox"],
         [{ spacing: 1, chunk: [4, 0.5, 1] }, "region.chunk"], [{ spacing: 1, polygon: [[0, 0]] }, "region"],
         [{ spacing: 1, circle: [0, 0, 0] }, "region.circle"], [{ spacing: 1, bbox: [0, 0, 1e300, 1] }, "region"],
+        [{ spacing: 1, chunk: "x" }, "region.chunk"], [{ spacing: 1, circle: { center: 5 } }, "region.circle"],
+        [{ spacing: 1, warp: "constructor" }, "warp"], [{ spacing: 1, attributes: [undefined] }, "attributes"],
     ]) {
         assert.throws(() => lite.points({ map: "s", ...odd }), (error) => {
             assert.ok(error instanceof StrewError, error);
@@ -114,14 +113,8 @@ test("what is wrong has its member, its value and what is allowed", () => {
         { spacing: -1, bbox }, { spacing: 1e101, bbox }, { spacing: 1, seed: 0.5, bbox },
         { spacing: 1, seed: 2n ** 64n, bbox }, { spacing: 1, settle: 5, bbox }, { spacing: 1, keep: 0, bbox },
     ]) {
-        const [own, full] = [lite, whole].map((strew) => {
-            try {
-                return strew.points({ map: "s", ...odd }).count();
-            } catch ({ faults }) {
-                return faults[0].detail;
-            }
-        });
-        assert.equal(own, full);
+        const [own, full] = [lite, whole].map((strew) => tried(() => strew.points({ map: "s", ...odd }).count()));
+        assert.equal(own[0].detail, full[0].detail);
     }
     const small = (keywords) => lite.points({ map: "s", ...keywords });
     assert.throws(() => small({ spacing: NaN }), /`spacing` = .*: must be a number/);
@@ -156,16 +149,10 @@ test("a query has the points that it has everywhere, or says what must be named"
 
 test("numbers of errors of the module are those of the whole package", () => {
     const far = { map: "s", spacing: 1, bbox: [0, 0, 1e300, 1] };
-    const faults = [lite, whole].map((strew) => {
-        try {
-            return strew.points(far).count();
-        } catch (error) {
-            return error.faults[0];
-        }
-    });
+    const [[own], [full]] = [lite, whole].map((strew) => tried(() => strew.points(far).count()));
     const limit = /within ±[\d.]+/;
-    assert.equal(faults[0].value, "1e300");
-    assert.deepEqual(faults[0].allowed.match(limit)[0], faults[1].allowed.match(limit)[0]);
+    assert.equal(own.value, "1e300");
+    assert.deepEqual(own.allowed.match(limit)[0], full.allowed.match(limit)[0]);
     const forest = lite.points({ map: "s", spacing: 1 });
     assert.throws(() => forest.nearest([0, 0], { radius: 1000 }), /about 3141593 points lie within/);
 });

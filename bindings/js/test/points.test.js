@@ -1,16 +1,13 @@
 // The package without a daemon.
 import assert from "node:assert/strict";
-import { before, test } from "node:test";
+import { test } from "node:test";
 
 import { DEFAULT_TABLES, SPACE_TABLES, StrewError, connect, open, raster } from "../lib/index.js";
 import { open as openLite } from "../lib/lite.js";
 import { Module } from "../lib/module.js";
-import { parsed } from "../lib/query.js";
+import { body, parsed, text } from "../lib/query.js";
 
-let strew;
-before(async () => {
-    strew = await open();
-});
+const strew = await open();
 
 test("points, ids and columns", () => {
     const attributes = { attributes: "angle, variant", variants: { oak: 3, birch: 1 } };
@@ -115,6 +112,7 @@ test("what is wrong has the words of REST", () => {
         });
     }
     assert.throws(() => strew.points({ bbox: [0, 0, 1, NaN], spacing: 1 }), /region.bbox/);
+    assert.throws(() => strew.points({ polygon: [null], spacing: 1 }), /region.polygon/);
 });
 
 test("what is no query or no address says so", () => {
@@ -183,12 +181,9 @@ test("integers of any size are exact", () => {
     assert.equal(points.resolved().seed, 2n ** 63n + 1n);
     const parts = points.split(3);
     assert.equal(parts.reduce((sum, { body }) => sum + BigInt(body.limit), 0n), points.count());
-    assert.deepEqual(parsed('{"a":"9007199254740993","seed":"9007199254740993","kinds":{"b":"9007199254740993"},"count":7}'), {
-        a: "9007199254740993",
-        seed: 9007199254740993n,
-        kinds: { b: 9007199254740993n },
-        count: 7,
-    });
+    const [long, exact] = ["9007199254740993", 9007199254740993n];
+    const value = parsed(`{"a":"${long}","seed":"${long}","kinds":{"b":"${long}"},"count":7}`);
+    assert.deepEqual(value, { a: long, seed: exact, kinds: { b: exact }, count: 7 });
 });
 
 test("a set that is freed makes its points again", () => {
@@ -262,10 +257,25 @@ test("pointers above 2 GiB are read", () => {
             bad: () => 1,
         },
     });
-    module.scoped((room) => {
-        assert.equal(module.text(room, "abc"), high);
-        assert.equal(module.json("good", room).detail, "no");
-        assert.equal(module.filled(Float64Array, 2, room, () => undefined).length, 2);
-        assert.throws(() => module.call("bad"), { kind: "invalid-query" });
-    });
+    assert.equal(module.scoped((room) => module.copied(room, "abc")), high);
+    assert.equal(module.json("good").detail, "no");
+    assert.equal(module.filled(Float64Array, 2, () => undefined).length, 2);
+    assert.throws(() => module.call("bad"), { kind: "invalid-query" });
+});
+
+test("what JSON cannot hold keeps its place, to be refused by its name", () => {
+    const odd = { spacing: NaN, keep: -Infinity, limit: () => 1, seed: Symbol("s"), world: null, warp: undefined };
+    const words = '{"spacing":"NaN","keep":"-Infinity","limit":"[function]","seed":"[symbol]","world":null}';
+    assert.equal(text(body(odd)), words);
+    assert.equal(text(body({ bbox: [0, 0, 1, NaN] })), '{"region":{"bbox":[0,0,1,"NaN"]}}');
+    assert.equal(text(body({ bbox: null, circle: [0, 1, 2] })), '{"region":{"circle":{"center":[0,1],"radius":2}}}');
+});
+
+test("volumes by keywords are those of bodies", () => {
+    const region = (keywords) => body(keywords).region;
+    assert.deepEqual(region({ ball: [0, 1, 2, 3] }), { ball: { center: [0, 1, 2], radius: 3 } });
+    assert.deepEqual(region({ chunk: [16, -3, 2, 1] }), { chunk: { size: 16, x: -3, y: 2, z: 1 } });
+    const ring = [[0, 0], [9, 0], [0, 9]];
+    const polygon = { type: "Polygon", coordinates: [[...ring, ring[0]]] };
+    assert.deepEqual(region({ prism: [ring, 1, 4] }), { prism: { polygon, bottom: 1, top: 4 } });
 });

@@ -1,9 +1,9 @@
-// The types of the package: node test/types.mjs compiles types.ts against it, with the compiler of a folder.
-// STREW_TSC is the folder of the npm packages typescript and @types/three; without it, they are installed.
+// The types of the package: node test/types.mjs compiles types.ts against it, and refuses its JavaScript where types in
+// comments are wrong or missing.
 import { execFileSync } from "node:child_process";
-import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
@@ -12,7 +12,8 @@ const npm = (...words) => execFileSync("npm", words, { cwd: folder, stdio: ["ign
 
 try {
     writeFileSync(join(folder, "package.json"), '{ "private": true, "type": "module" }');
-    npm("install", "--silent", "--no-audit", "--no-fund", "--prefer-offline", "typescript@5", "@types/three@0.179");
+    const packages = ["typescript@5", "@types/node@20", "@types/three@0.179"];
+    npm("install", "--silent", "--no-audit", "--no-fund", "--prefer-offline", ...packages);
     const modules = join(folder, "node_modules");
     for (const [name, from] of [["strew", ".."], ["strew-tables", "../tables"]]) {
         mkdirSync(join(modules, name));
@@ -20,10 +21,13 @@ try {
             cpSync(here(`${from}/${part}`), join(modules, name, part), { recursive: true });
         }
     }
-    cpSync(here("types.ts"), join(folder, "types.ts"));
-    const how = ["--strict", "--noEmit", "--target", "esnext", "--moduleResolution", "bundler", "--module", "esnext"];
-    const tsc = [join(modules, "typescript/bin/tsc"), ...how, "--lib", "esnext,dom", "types.ts"];
-    execFileSync(process.execPath, tsc, { cwd: folder, stdio: "inherit" });
+    for (const part of ["types.ts", "../build.mjs", "../lib"]) {
+        cpSync(here(part), join(folder, basename(part)), { recursive: true });
+    }
+    const code = readdirSync(join(folder, "lib")).filter((name) => name.endsWith(".js")).map((name) => `lib/${name}`);
+    const target = ["--lib", "esnext,dom", "--target", "esnext", "--module", "esnext", "--moduleResolution", "bundler"];
+    const tsc = [join(modules, "typescript/bin/tsc"), "--strict", "--checkJs", "--noEmit", ...target];
+    execFileSync(process.execPath, [...tsc, "types.ts", "build.mjs", ...code], { cwd: folder, stdio: "inherit" });
     console.log("the types compile, and refuse what is wrong");
 } finally {
     rmSync(folder, { recursive: true, force: true });

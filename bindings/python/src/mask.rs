@@ -16,26 +16,16 @@ pub fn mask<'py>(
     seed: u64,
     address: String,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    // The pixels that turn on, and those of the clusters that turn off before.
-    let total = u128::from(size) * u128::from(size) * 60 / 56;
+    let total = Mask::steps(size).into();
     let made = work::done(py, Some(total), move |library| {
         let entry = chosen(&parse_pairs(&address, groups::TABLES), library.catalog())?;
-        let goes_on = || library.work().goes_on(1000);
+        let goes_on = |pixels| library.work().goes_on(pixels);
         let made = Mask::new_while(&entry.table()?, size, seed, goes_on);
-        let made = made.map_err(|error| {
-            Fault::new(
-                &error.field,
-                error.value,
-                "no mask can be made",
-                error.allowed,
-            )
-        })?;
+        let detail = "no mask can be made";
+        let made =
+            made.map_err(|error| Fault::new(&error.field, error.value, detail, error.allowed))?;
         made.ok_or(Error::Internal("the mask was stopped"))
     })?;
-    let bytes: Vec<u8> = made
-        .ranks()
-        .iter()
-        .flat_map(|rank| rank.to_ne_bytes())
-        .collect();
-    Ok(PyBytes::new(py, &bytes))
+    let bytes = made.ranks().iter().flat_map(|rank| rank.to_ne_bytes());
+    Ok(PyBytes::new(py, &bytes.collect::<Vec<u8>>()))
 }

@@ -44,7 +44,7 @@ pub fn measure(
     ring_width: Option<f64>,
 ) -> PyResult<Report> {
     let pairs = numbers(points, f64::from_ne_bytes)?.as_chunks().0.to_vec();
-    let measured = work::done(py, None, move |_| {
+    let measured = work::done(py, None, move |library| {
         let plain = Resolution::default();
         let of = Measured {
             bbox,
@@ -55,7 +55,7 @@ pub fn measure(
                 ring_width: ring_width.unwrap_or(plain.ring_width),
             },
         };
-        measured::measure(pairs, &of)
+        measured::measure(pairs, &of, library.work())
     });
     Ok(Report(Arc::new(Mutex::new(measured?))))
 }

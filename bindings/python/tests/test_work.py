@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import signal
+import subprocess
 import sys
-import threading
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -33,6 +33,25 @@ LONG: dict[str, Callable[[], Any]] = {
 }
 
 
+#: A process that is interrupted in a call. The thread that does the work ends, too.
+CHILD = """
+import os, signal, sys, strew, test_work
+signal.signal(signal.SIGINT, signal.default_int_handler)
+strew.limits(rows=10**12)
+strew.measure(test_work.NOISE.reshape(-1, 2)[:1000], bbox=(0, 0, 1, 1))
+threads = lambda: len(os.listdir("/proc/self/task"))
+before = threads()
+try:
+    with strew.progress(lambda *at: print("begun", flush=True)):
+        test_work.LONG[sys.argv[1]]()
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+while threads() >= before:
+    os.sched_yield()
+print(len(strew.points(bbox=(0, 0, 10, 10), spacing=1, seed=7).xy), "points")
+"""
+
+
 @pytest.fixture
 def limits() -> Iterator[dict[str, int]]:
     before = strew.limits()
@@ -40,29 +59,18 @@ def limits() -> Iterator[dict[str, int]]:
     strew.limits(**before)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted in /proc")
 @pytest.mark.parametrize("kind", LONG)
-def test_an_interrupt_ends_a_call(kind: str, limits: dict[str, int]) -> None:
-    strew.limits(rows=10**12)
-    has_begun = threading.Event()
-    times: list[float] = []
-
-    def interrupt() -> None:
-        has_begun.wait()
-        times.append(monotonic())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    sender = threading.Thread(target=interrupt)
-    sender.start()
-    try:
-        with strew.progress(lambda points, total: has_begun.set()), pytest.raises(KeyboardInterrupt):
-            LONG[kind]()
-            has_begun.set()
-            sender.join()
-        assert monotonic() - times[0] < 3, "a second, on a busy machine"
-    finally:
-        has_begun.set()
-        sender.join()
-    assert len(strew.points(bbox=(0, 0, 10, 10), spacing=1, seed=7).xy) == 100
+def test_an_interrupt_ends_a_call_and_its_work(kind: str) -> None:
+    command = [sys.executable, "-c", CHILD, kind]
+    said: list[tuple[str, float]] = []
+    with subprocess.Popen(command, cwd=Path(__file__).parent, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout and child.stdout.readline() == "begun\n"
+        child.send_signal(signal.SIGINT)
+        sent = monotonic()
+        said.extend((line.strip(), monotonic() - sent) for line in child.stdout if line != "begun\n")
+    assert [line for line, _ in said] == ["interrupted", "100 points"]
+    assert all(time < 3 for _, time in said), f"a second, on a busy machine: {said}"
 
 
 def test_progress_is_followed() -> None:

@@ -254,8 +254,9 @@ impl Catalog {
         self.mixes(of, true).map(|(mix, _)| mix.text()).collect()
     }
 
-    pub fn digests(&self) -> impl Iterator<Item = &str> {
-        self.entries.values().map(|entry| entry.digest.as_str())
+    /// All tables: of the plane and in space, built in and of the folder, those with kinds among them.
+    pub fn tables(&self) -> impl ExactSizeIterator<Item = &Arc<Entry>> {
+        self.entries.values()
     }
 
     /// The names of the profiles, without repetition.

@@ -19,12 +19,14 @@ use crate::{
     entry::Entry,
     error::CatalogError,
     key::{Key, Source},
-    named::{Changes, Refused},
+    named::{Changes, Reread},
 };
 
 /// The changes since the folder was last read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Reload {
+    /// The number of tables that are loaded now.
+    pub tables: usize,
     /// Tables that were not there before, or not with this content.
     pub loaded: Vec<Serving>,
     /// Tables that answer as before, those among them whose files were refused.
@@ -39,7 +41,11 @@ pub struct Reload {
     pub except: Changes,
     /// The worlds.
     pub worlds: Changes,
+    /// The settings that changed in the files of the configuration, and take effect at the next start.
+    pub at_next_start: Vec<String>,
 }
+
+type Kind = fn(&mut Reload) -> &mut Changes;
 
 /// A table, as reported to the operator.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -88,20 +94,22 @@ impl Serving {
 }
 
 impl Reload {
-    /// Adds documents that were not taken.
-    pub fn refuse(&mut self, refused: Vec<Refused>) {
+    /// Adds the changes of a kind of documents, and those that were not taken. Returns their new state.
+    pub fn take<S>(&mut self, kind: Kind, (state, changes, refused): Reread<S>) -> S {
+        *kind(self) = changes;
         let refusals = refused.into_iter().map(|(error, serving)| Refusal {
             detail: error.to_string(),
             source: error.source_name,
             serving,
         });
         self.refused.extend(refusals);
+        state
     }
 
     /// Adds a file or a folder that was not taken.
-    pub fn refuse_file(&mut self, source: &str, detail: &impl std::fmt::Display) {
+    pub fn refuse_file(&mut self, source: Option<&Path>, detail: &impl std::fmt::Display) {
         self.refused.push(Refusal {
-            source: source.into(),
+            source: source.map_or(String::new(), |source| source.display().to_string()),
             detail: detail.to_string(),
             serving: None,
         });
@@ -117,12 +125,8 @@ impl Reload {
 impl Catalog {
     /// The catalog after reading the fields and the lists of points again. What came of it is added to `reload`.
     pub fn reload_names(self, names: &Config, reload: &mut Reload) -> Self {
-        let (fields, changes, refused) = self.fields.reload(&names.fields);
-        reload.fields = changes;
-        reload.refuse(refused);
-        let (lists, changes, refused) = self.except.reload(&names.except);
-        reload.except = changes;
-        reload.refuse(refused);
+        let fields = reload.take(|all| &mut all.fields, self.fields.reload(&names.fields));
+        let lists = reload.take(|all| &mut all.except, self.except.reload(&names.except));
         self.with_fields(fields).with_except(lists)
     }
 
@@ -130,20 +134,14 @@ impl Catalog {
     pub fn reload_tables(&self, folder: Option<&Path>) -> (Self, Reload) {
         let mut reload = Reload::default();
         let files = folder.map_or(Ok(vec![]), table_files);
-        let files = match files {
-            Ok(files) => files,
-            Err(error) => {
-                let folder = folder.unwrap_or(Path::new(""));
-                reload.refuse_file(&folder.display().to_string(), &error);
-                reload.kept = (self.entries().chain(self.in_space()))
-                    .map(|old| Serving::new(old, None))
-                    .collect();
-                return (self.clone(), reload);
-            }
-        };
         let mut after = self.clone();
-        after.entries.clone_from(&self.built_in);
-        after.entries.extend(self.read(files, &mut reload.refused));
+        match files {
+            Ok(files) => {
+                after.entries.clone_from(&self.built_in);
+                after.entries.extend(self.read(files, &mut reload.refused));
+            }
+            Err(error) => reload.refuse_file(folder, &error),
+        }
         for (key, new) in &after.entries {
             match self.entries.get(key) {
                 Some(old) if old.digest == new.digest => {
@@ -155,6 +153,7 @@ impl Catalog {
         let gone = |(key, _): &(&Key, &Arc<Entry>)| !after.entries.contains_key(*key);
         let removed = self.entries.iter().filter(gone);
         reload.removed = removed.map(|(_, old)| Serving::new(old, None)).collect();
+        reload.tables = after.tables().len();
         (after, reload)
     }
 

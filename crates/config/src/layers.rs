@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::{Config, ConfigError, DEFAULTS, validate::validate};
-use crate::{bounded_file, lines};
+use crate::{bounded_file, error::ConfigError, lines};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
@@ -17,26 +16,27 @@ const TEST_PREFIX: &str = "STREW_TEST_";
 /// Variables that are neither settings nor for tests: the name of a configuration file, a key for a server.
 const OTHERS: [&str; 2] = ["STREW_CONFIG", "STREW_API_KEY"];
 
+pub const DEFAULTS: &str = include_str!("../strew.toml");
 /// The most bytes of a file of settings. Fields and worlds may hold outlines.
 const MOST_BYTES: u64 = 16 << 20;
 
 const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
 
-/// Layers of settings, merged so far, of which a [`Config`] is made.
-#[derive(Clone, Debug)]
+/// Layers of settings, merged so far, of which a [`Config`](crate::Config) is made.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
-    merged: Table,
-    by_flags: Vec<(String, String)>,
+    pub(crate) merged: Table,
+    /// What the environment and flags set: the key, the text and the source of each.
+    pub(crate) set: Vec<[String; 3]>,
     /// The files that were laid over.
-    files: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
 }
 
 impl Layers {
     pub fn new() -> Result<Self, ConfigError> {
         Ok(Self {
             merged: parse("the built-in configuration", DEFAULTS)?,
-            by_flags: vec![],
-            files: vec![],
+            ..Self::default()
         })
     }
 
@@ -86,75 +86,52 @@ impl Layers {
                     key: name,
                 });
             };
-            self.set_text(&keys[at], &value, &format!("the environment ({name})"))?;
+            self = self.set_text(&keys[at], &value, &format!("the environment ({name})"))?;
         }
         Ok(self)
     }
 
     /// Lays a flag over the layers so far: `key=value`. The last one of a key counts.
-    pub fn assignment(mut self, text: &str) -> Result<Self, ConfigError> {
-        let (key, value) = text
-            .split_once('=')
-            .ok_or_else(|| ConfigError::Assignment { text: text.into() })?;
-        let keys = self.keys();
-        if !keys.iter().any(|known| known == key) {
-            return Err(ConfigError::UnknownKey {
-                source_name: format!("--set {text}"),
-                key: key.into(),
-                suggestions: closest(key, &keys),
-            });
-        }
-        let flag = format!("--set {text}");
-        self.set_text(key, value, &flag)?;
-        self.by_flags.push((key.into(), flag));
-        Ok(self)
+    pub fn assignment(self, text: &str) -> Result<Self, ConfigError> {
+        let no_value = || ConfigError::Assignment { text: text.into() };
+        let (key, value) = text.split_once('=').ok_or_else(no_value)?;
+        self.set_text(key, value, &format!("--set {text}"))
     }
 
     /// Lays a flag of its own over the layers so far.
-    pub fn flag(mut self, flag: &str, key: &str, value: &str) -> Result<Self, ConfigError> {
-        if let Some((_, first)) = self.by_flags.iter().find(|(known, _)| known == key) {
+    pub fn flag(self, flag: &str, key: &str, value: &str) -> Result<Self, ConfigError> {
+        if let Some([_, _, first]) = self.by_flags().find(|[known, ..]| known == key) {
             return Err(ConfigError::Twice {
                 key: key.into(),
                 first: first.clone(),
                 second: flag.into(),
             });
         }
-        self.set_text(key, value, flag)?;
-        self.by_flags.push((key.into(), flag.into()));
-        Ok(self)
+        self.set_text(key, value, flag)
+    }
+
+    fn by_flags(&self) -> impl Iterator<Item = &[String; 3]> {
+        self.set.iter().filter(|[_, _, by]| by.starts_with("--"))
     }
 
     /// Checks that flags set only the settings of `used`, each a section with a dot or a key. Files and the environment
     /// may set others, since the daemon shares them.
     pub fn only(self, used: &[&str]) -> Result<Self, ConfigError> {
         let is_used = |key: &str| used.iter().any(|used| key.starts_with(used));
-        match self.by_flags.iter().find(|(key, _)| !is_used(key)) {
-            None => Ok(self),
-            Some((key, flag)) => Err(ConfigError::Unused {
-                source_name: flag.clone(),
-                key: key.clone(),
-                used: self.keys().into_iter().filter(|key| is_used(key)).collect(),
-            }),
-        }
-    }
-
-    pub fn finish(self) -> Result<Config, ConfigError> {
-        let config = self.read()?;
-        validate(&config)?;
-        Ok(config)
-    }
-
-    pub(super) fn read(self) -> Result<Config, ConfigError> {
-        let mut config: Config = self
-            .merged
-            .try_into()
-            .map_err(|error| ConfigError::Invalid(Box::new(error)))?;
-        config.files = self.files;
-        Ok(config)
+        let Some([key, _, source_name]) = self.by_flags().find(|[key, ..]| !is_used(key)).cloned()
+        else {
+            return Ok(self);
+        };
+        let used = self.keys().into_iter().filter(|key| is_used(key)).collect();
+        Err(ConfigError::Unused {
+            source_name,
+            key,
+            used,
+        })
     }
 
     /// Every key, `section.name`, in the order of the defaults.
-    fn keys(&self) -> Vec<String> {
+    pub(crate) fn keys(&self) -> Vec<String> {
         self.merged
             .iter()
             .filter_map(|(section, value)| Some((section, value.as_table()?)))
@@ -162,8 +139,22 @@ impl Layers {
             .collect()
     }
 
+    /// The value of a key, unless it is a table; 5 and 5.0 are the same.
+    pub(crate) fn value(&self, key: &str) -> Option<Value> {
+        let (section, name) = key.split_once('.')?;
+        match self.merged.get(section)?.get(name)? {
+            Value::Integer(value) => Some(Value::Float(*value as f64)),
+            value => Some(value.clone()).filter(|value| !value.is_table()),
+        }
+    }
+
     /// Sets a key from text, read as the type the key has.
-    fn set_text(&mut self, key: &str, text: &str, source_name: &str) -> Result<(), ConfigError> {
+    pub(crate) fn set_text(
+        mut self,
+        key: &str,
+        text: &str,
+        source_name: &str,
+    ) -> Result<Self, ConfigError> {
         let slot = key.split_once('.').and_then(|(section, name)| {
             self.merged.get_mut(section)?.as_table_mut()?.get_mut(name)
         });
@@ -171,38 +162,24 @@ impl Layers {
             return Err(ConfigError::UnknownKey {
                 source_name: source_name.into(),
                 key: key.into(),
-                suggestions: vec![],
+                suggestions: closest(key, &self.keys()),
             });
         };
         let plain = text.trim().replace('_', "");
+        let float = || plain.parse().ok().map(Value::Float);
+        let integer = plain.parse().ok().map(Value::Integer);
         let value = match slot {
             Value::String(_) => Some(Value::String(text.into())),
-            Value::Integer(_) => plain
-                .parse()
-                .map(Value::Integer)
-                .or_else(|_| plain.parse().map(Value::Float))
-                .ok(),
-            Value::Float(_) => plain.parse().ok().map(Value::Float),
+            Value::Integer(_) => integer.or_else(float),
+            Value::Float(_) => float(),
             Value::Boolean(_) => text.trim().parse().ok().map(Value::Boolean),
             _ => None,
         };
         *slot = value
             .filter(|value| fits(slot, value))
             .ok_or_else(|| wrong_type(source_name, key, &format!("{text:?}"), slot))?;
-        Ok(())
-    }
-}
-
-impl Config {
-    /// Reads again the fields, lists and worlds that the files name. Other settings stay as they were at the start.
-    pub fn read_names(&self) -> Result<Self, ConfigError> {
-        let over = |layers: Layers, file: &PathBuf| layers.file(file);
-        let now = self.files.iter().try_fold(Layers::new()?, over)?.read()?;
-        let mut after = self.clone();
-        after.fields.named = now.fields.named;
-        after.except.named = now.except.named;
-        after.worlds.named = now.worlds.named;
-        Ok(after)
+        self.set.push([key, text, source_name].map(Into::into));
+        Ok(self)
     }
 }
 

@@ -24,7 +24,7 @@ mod reports;
 mod server;
 mod validate;
 
-use std::{path::PathBuf, time::Duration};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -37,9 +37,7 @@ pub use reports::{Http, Log, LogFormat, LogOutput, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
 
 pub use error::ConfigError;
-pub use layers::Layers;
-
-pub const DEFAULTS: &str = include_str!("../strew.toml");
+pub use layers::{DEFAULTS, Layers};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,8 +60,9 @@ pub struct Config {
     pub telemetry: Telemetry,
     pub except: Except,
     pub worlds: Worlds,
+    /// What these settings were read from.
     #[serde(skip)]
-    pub files: Vec<PathBuf>,
+    pub layers: Layers,
 }
 
 impl Config {

@@ -15,12 +15,6 @@ pub struct Tables {
     pub preload_bytes: u64,
 }
 
-impl Tables {
-    pub fn folder(&self) -> Option<&Path> {
-        some(&self.folder)
-    }
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
     pub embedded: bool,
@@ -31,23 +25,11 @@ pub struct Fields {
     pub named: BTreeMap<String, toml::Table>,
 }
 
-impl Fields {
-    pub fn folder(&self) -> Option<&Path> {
-        some(&self.folder)
-    }
-}
-
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Worlds {
     pub folder: PathBuf,
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,
-}
-
-impl Worlds {
-    pub fn folder(&self) -> Option<&Path> {
-        some(&self.folder)
-    }
 }
 
 /// The settings of lists of points to load, which queries leave out.
@@ -60,13 +42,19 @@ pub struct Except {
     pub named: BTreeMap<String, toml::Table>,
 }
 
-impl Except {
-    pub fn folder(&self) -> Option<&Path> {
-        some(&self.folder)
-    }
-}
-
 /// A file or folder, unless it is empty.
 pub(super) fn some(path: &Path) -> Option<&Path> {
     Some(path).filter(|path| !path.as_os_str().is_empty())
 }
+
+macro_rules! folders {
+    ($($Section:ident)+) => {
+        $(impl $Section {
+            pub fn folder(&self) -> Option<&Path> {
+                some(&self.folder)
+            }
+        })+
+    };
+}
+
+folders!(Tables Fields Worlds Except);

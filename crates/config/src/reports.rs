@@ -66,16 +66,12 @@ fn is_web_address(text: &str) -> bool {
         port.bytes().all(|b| b.is_ascii_digit()) && port.parse::<u16>().is_ok_and(|port| port > 0)
     };
     let is_label = |label: &str| {
-        !label.is_empty()
-            && label
-                .bytes()
-                .all(|b| b.is_ascii_alphanumeric() || b == b'-')
-            && !label.starts_with('-')
-            && !label.ends_with('-')
+        let is_plain = |b: u8| b.is_ascii_alphanumeric() || b == b'-';
+        let has_ends = !label.starts_with('-') && !label.ends_with('-');
+        has_ends && !label.is_empty() && label.bytes().all(is_plain)
     };
-    let inner = host
-        .strip_prefix('[')
-        .and_then(|host| host.strip_suffix(']'));
+    let open = host.strip_prefix('[');
+    let inner = open.and_then(|host| host.strip_suffix(']'));
     let is_host = match inner {
         Some(inner) => inner.parse::<Ipv6Addr>().is_ok(),
         None => host.split('.').all(is_label),
@@ -167,8 +163,12 @@ impl Telemetry {
 /// Why a text is no filter of the log.
 #[cfg(feature = "log")]
 fn wrong_filter(text: &str) -> Option<String> {
-    let read = text.parse::<tracing_subscriber::filter::Targets>();
-    read.err().map(|error| error.to_string())
+    use tracing_subscriber::filter::{LevelFilter, Targets};
+    // A word alone is a level: `Targets` takes a mistyped one for a module, and nothing is logged.
+    let mut words = text.split(',').filter(|part| !part.contains('='));
+    let mistyped = words.find_map(|word| word.trim().parse::<LevelFilter>().err());
+    let wrong = text.parse::<Targets>().err().map(|error| error.to_string());
+    mistyped.map(|error| error.to_string()).or(wrong)
 }
 
 /// Programs without a log need no parser of filters.
@@ -179,9 +179,8 @@ const fn wrong_filter(_: &str) -> Option<String> {
 
 /// Whether a text is the address of a collector: a scheme and an authority.
 fn is_endpoint(text: &str) -> bool {
-    let rest = ["http://", "https://"]
-        .into_iter()
-        .find_map(|scheme| text.strip_prefix(scheme));
+    let mut schemes = ["http://", "https://"].into_iter();
+    let rest = schemes.find_map(|scheme| text.strip_prefix(scheme));
     let authority = rest.map(|rest| rest.strip_suffix('/').unwrap_or(rest));
     authority.is_some_and(|authority| {
         let is_allowed = |c: char| c.is_ascii_alphanumeric() || "-._~%!$&'()*+,;=:@[]".contains(c);

@@ -1,6 +1,9 @@
-//! Checking merged settings: the ranges of all numbers, and the rules of sections, which stand beside their fields.
+//! Settings of layers, read at the start and again, and checked: the ranges of all numbers, and the rules of sections,
+//! which stand beside their fields.
 
-use super::{Config, ConfigError};
+use std::path::PathBuf;
+
+use super::{Config, ConfigError, Layers};
 
 const SECOND: f64 = 1.0;
 const HOUR: f64 = 3600.0;
@@ -20,6 +23,36 @@ macro_rules! out_of_range {
             format!("{key} = {value}; allowed: {} to {}", range.start(), range.end())
         })
     };
+}
+
+impl Layers {
+    pub fn finish(self) -> Result<Config, ConfigError> {
+        let read: Result<Config, _> = self.merged.clone().try_into();
+        let mut config = read.map_err(|error| ConfigError::Invalid(Box::new(error)))?;
+        validate(&config)?;
+        config.layers = self;
+        Ok(config)
+    }
+}
+
+impl Config {
+    /// Reads the files again. The fields, lists and worlds that they name now are taken; of the other settings, which stay
+    /// as they were at the start, also returns the names of those that the next start would change.
+    pub fn read_again(&self) -> Result<(Self, Vec<String>), ConfigError> {
+        let then = &self.layers;
+        let over = |layers: Layers, file: &PathBuf| layers.file(file);
+        let mut now = then.files.iter().try_fold(Layers::new()?, over)?;
+        for [key, text, source] in &then.set {
+            now = now.set_text(key, text, source)?;
+        }
+        let is_other = |key: &String| now.value(key) != then.value(key);
+        let changed = now.keys().into_iter().filter(is_other).collect();
+        let (mut after, now) = (self.clone(), now.finish()?);
+        after.fields.named = now.fields.named;
+        after.except.named = now.except.named;
+        after.worlds.named = now.worlds.named;
+        Ok((after, changed))
+    }
 }
 
 /// Checks every setting; reports all that are not allowed.

@@ -62,7 +62,7 @@ fn main() {
         .run()
         .print("one core", &[("G points/s", &giga)]);
 
-    let ids: Vec<_> = cube(&seeded, 0.0, 10.0).iter().map(|p| p.id).collect();
+    let ids: Vec<_> = cube(&seeded, 0.0, 10.0).iter().map(|p| p.id()).collect();
     let by_id = |set: &SpaceSet| {
         black_box(ids.iter().filter_map(|id| set.point(*id)).count());
         ids.len() as u64

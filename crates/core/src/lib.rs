@@ -107,14 +107,14 @@ pub use lattice::{
     Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds, seed::Seed,
 };
 pub use map::{Map, Twin};
-pub use near::Clearance;
+pub use near::{Clearance, Neighbor};
 pub use pattern::{Alpha, Pattern};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::{
     Plan,
     member::{Member, Members},
 };
-pub use set::{Kind, Neighbor, PointSet};
+pub use set::{Kind, PointSet};
 pub use shape::{Area, Circle, Polygon, Region, Shape};
 pub use table::Table;
 pub use walk::{Blocks, Tile};

@@ -7,7 +7,7 @@ use std::{
 
 /// Types and traits that are public only because a sealed trait names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: &str = "Batch Copies Double Emit Geometry Hashed Held Lanes Outlined Parts PatchShears Picks Row Scope Single \
+const SEALED: &str = "Batch Copies Double Emit Geometry Hashed Held Lanes Made Outlined Parts PatchShears Picks Row Scope Single \
                       Vector WarpedColumns";
 
 /// The sources of the library, as (path from `src`, text).

@@ -209,7 +209,7 @@ proptest! {
         }
         let found = set.within(region).expect("near enough");
         prop_assert_eq!(found.count(), inside.len() as u128);
-        let found: Vec<_> = found.iter().map(|point| (point.id, point.at())).collect();
+        let found: Vec<_> = found.iter().map(|point| (point.id(), point.at())).collect();
         prop_assert_eq!(found, inside);
     }
 }
@@ -271,7 +271,7 @@ fn sets_are_those_of_their_files_and_of_their_parameters() {
     let bound = plan.attributes(&scale).expect("of space");
     let mut columns = vec![];
     bound.write_points(&plan.to_vec(), &mut columns);
-    assert_eq!(columns, bound.columns(plan.iter().map(|point| point.id)));
+    assert_eq!(columns, bound.columns(plan.iter().map(|point| point.id())));
     assert!(set.attributes(&list(Attribute::Angle)).is_err());
     assert_eq!(
         (set.steps(), set.keep(0.5).expect("a share").steps()),

@@ -54,10 +54,17 @@ fn check(set: &SpaceSet, share: &dyn Fn([f64; 3]) -> f64, inner: Region, room: f
         .collect();
     let found = set.within(inner).expect("near");
     assert_eq!(found.count(), expected.len() as u128);
-    let moved = |point: &Point| still.point(point.id) != Some(*point);
-    assert!(expected.len() > 20 && found.iter().any(|point| moved(&point)));
+    let mut moved = found
+        .iter()
+        .map(|point| still.point(point.id()) != Some(point));
+    assert!(expected.len() > 20 && moved.any(|moved| moved));
     for point in found.iter() {
-        assert_eq!(Some(&point.at()), expected.get(&point.id), "{:?}", point.id);
+        assert_eq!(
+            Some(&point.at()),
+            expected.get(&point.id()),
+            "{}",
+            point.id()
+        );
     }
 }
 
@@ -121,7 +128,7 @@ proptest! {
             false => agree(&part, whole, &left, parts),
         }
         for point in left.iter().step_by(29) {
-            prop_assert_eq!(part.point(point.id), Some(*point));
+            prop_assert_eq!(part.point(point.id).map(Point::from), Some(*point));
         }
         let chunks = (0..8i64).flat_map(|i| {
             let at = [-3 + i % 2 * 6, 2 + i / 2 % 2 * 6, -9 + i / 4 * 6].map(|v| v as f64);
@@ -158,7 +165,7 @@ fn thinned_sets_keep_their_distances() {
             let [own, next] = set.nearest(point.at(), 2).expect("near")[..] else {
                 panic!("two points");
             };
-            assert_eq!(own.point, point);
+            assert_eq!(own.member, point);
             assert!(next.distance >= set.least_distance());
         }
     }

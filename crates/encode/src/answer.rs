@@ -9,18 +9,19 @@ use strew_error::{Error, Fault};
 #[cfg(feature = "columnar")]
 use crate::{
     batches::Batches,
-    columnar::{self, Columnar},
-    parquet,
+    columnar::{Arrow, Columnar, Writer as _},
+    parquet::{GROUP_ROWS, Parquet},
 };
 use crate::{
-    blocks::{Blocks, EncodeError, Nothing},
+    blocks::{Blocks, EncodeError},
     csv,
     encoding::Encoding,
     geojson, glb,
     head::Head,
+    index::Index,
     json, legend,
     members::Members,
-    ndjson, npy,
+    npy,
     output::Output,
     packed::{Pairs, Triples},
     part::Part,
@@ -43,12 +44,20 @@ pub struct Answer {
     head: Option<Bytes>,
     blocks: Box<dyn Blocks>,
     size: Option<u64>,
-    /// The bytes of each point, if all points have the same number and nothing stands between or after them.
-    record_bytes: Option<u64>,
+    piece: Option<Piece>,
     origin: Option<Place>,
     legend: Option<String>,
     warning: Option<&'static str>,
     plain: Option<Plain>,
+}
+
+/// What an answer is made of, if any part of it can be made alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// Points of so many bytes each, and nothing between or after them.
+    Bytes(u64),
+    /// Blocks of so many points each, whose bytes depend on these alone, and a last block for the end.
+    Points(u64),
 }
 
 /// An answer that is nothing but a head and the packed points of one plan. Callers with several threads can fill the
@@ -97,7 +106,7 @@ impl Answer {
         let head = || head(count);
         let rows = Rows::new(parts, coordinates);
         let rows = match output.decimals {
-            Some(decimals) if !output.encoding.is_picture() => rows.rounded(decimals)?,
+            Some(decimals) if !output.encoding.traits().is_picture => rows.rounded(decimals)?,
             _ => rows,
         };
         let members = || Members::new(&rows, output);
@@ -144,11 +153,16 @@ impl Answer {
                 return Self::in_columns(rows, &head(), output, block_bytes);
             }
             Encoding::Json => {
-                let format = json::Json::new(head(), members());
+                let (head, members) = (head(), members());
+                let format = json::Json { head, members };
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Ndjson => {
-                let format = ndjson::Ndjson::new(output.has_summary.then(head), members());
+                let summary = output.has_summary.then(head);
+                let format = json::Ndjson {
+                    last: summary.map(|summary| json::Last { summary }),
+                    members: members(),
+                };
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Csv => {
@@ -156,12 +170,17 @@ impl Answer {
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Geojson => {
-                let format = geojson::Collection::new(head(), members());
+                let (head, members) = (head(), members());
+                let format = geojson::Collection { head, members };
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Geojsonseq => {
-                let format = geojson::Sequence::new(members());
-                return Ok(Self::of_text(rows, format, block_bytes));
+                let members = members();
+                return Ok(Self::of_text(
+                    rows,
+                    geojson::Sequence { members },
+                    block_bytes,
+                ));
             }
         };
         let legend = legend::legend(rows.schema(), output.encoding);
@@ -179,8 +198,8 @@ impl Answer {
         output: &Output,
         block_bytes: usize,
     ) -> Result<Self, Error> {
+        let origin = rows.coordinates().origin();
         if output.encoding == Encoding::Parquet {
-            let origin = rows.coordinates().origin();
             let crs = output.crs.as_ref().map(|crs| {
                 let allowed = "a system of EPSG that is projected or geographic and not deprecated, OGC:CRS84, or \
                                with `strew sample` a file of PROJJSON";
@@ -188,27 +207,25 @@ impl Answer {
                 crs.projjson()
                     .ok_or_else(|| Fault::new("crs", crs, detail, allowed))
             });
-            let parquet = parquet::Parquet::new(rows, head, crs.transpose()?, output.zstd)?;
-            return Ok(Self::of_blocks(origin, parquet));
+            let mut parquet = Parquet::new(rows.schema(), head, crs.transpose()?, output.zstd)?;
+            let mark = std::mem::take(parquet.written()).into();
+            return Ok(Self {
+                head: Some(mark),
+                piece: Some(Piece::Points(GROUP_ROWS as u64)),
+                ..Self::of_blocks(origin, Columnar::new(rows, parquet))
+            });
         }
         let batches = Batches::new(rows.schema(), head, None);
-        if output.encoding == Encoding::Feather {
-            let writer = columnar::arrow_file(batches.schema());
-            return Self::of_columns(rows, batches, writer, block_bytes);
-        }
-        let writer = columnar::arrow_stream(batches.schema());
-        Self::of_columns(rows, batches, writer, block_bytes)
+        let writer = Arrow::new(batches, output.encoding == Encoding::Feather, block_bytes)?;
+        Ok(Self::of_blocks(origin, Columnar::new(rows, writer)))
     }
 
     /// Refuses columnar formats: programs that link the library without them have writers of their own.
     #[cfg(not(feature = "columnar"))]
     fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
         let encoding = output.encoding;
-        let allowed = Encoding::names_where(Encoding::is_written);
-        let detail = match encoding.is_streamed() {
-            true => "only the daemon and `strew sample` write it",
-            false => "only `strew sample` writes it",
-        };
+        let allowed = Encoding::names();
+        let detail = "only the daemon and `strew sample` write it";
         Err(Fault::new("format", encoding.name(), detail, allowed).into())
     }
 
@@ -217,26 +234,13 @@ impl Answer {
         Self {
             head: None,
             size: None,
-            record_bytes: None,
+            piece: None,
             origin,
             legend: None,
             warning: None,
             plain: None,
             blocks: Box::new(blocks),
         }
-    }
-
-    /// A columnar format of unknown size.
-    #[cfg(feature = "columnar")]
-    fn of_columns(
-        rows: Rows,
-        batches: Batches,
-        writer: Result<impl columnar::Writer + 'static, EncodeError>,
-        block_bytes: usize,
-    ) -> Result<Self, Error> {
-        let origin = rows.coordinates().origin();
-        let columns = Columnar::new(rows, batches, writer?, block_bytes);
-        Ok(Self::of_blocks(origin, columns))
     }
 
     /// A text of unknown size.
@@ -264,7 +268,8 @@ impl Answer {
             })
         });
         let blocks: Box<dyn Blocks> = match &plain {
-            _ if rows.count() == 0 => Box::new(Nothing),
+            // The plan has no points.
+            _ if rows.count() == 0 => Box::new(Records::new(rows, layout, block_bytes)),
             Some(Plain { plan, is_f32, .. }) if *is_f32 => {
                 Box::new(Pairs::<F32>::new(plan, block_bytes))
             }
@@ -279,7 +284,7 @@ impl Answer {
             head,
             blocks,
             size,
-            record_bytes: Some(bytes),
+            piece: Some(Piece::Bytes(bytes)),
             origin,
             legend: None,
             warning: None,
@@ -293,9 +298,19 @@ impl Answer {
         self.size
     }
 
-    /// The bytes of each point, for answers of nothing but a head and points of one size.
-    pub const fn record_bytes(&self) -> Option<u64> {
-        self.record_bytes
+    /// What it is made of, if any part of it can be made alone.
+    pub const fn piece(&self) -> Option<Piece> {
+        self.piece
+    }
+
+    /// Where its bytes lie, if that is known before they are made.
+    pub fn index(&self) -> Option<Index> {
+        let (Some(Piece::Bytes(bytes)), size) = (self.piece, self.size?) else {
+            return None;
+        };
+        let front = self.head.clone().unwrap_or_default();
+        let rows = (size - front.len() as u64) / bytes;
+        Some(Index::even(front, bytes, rows))
     }
 
     /// The bytes before the points, until they are taken.

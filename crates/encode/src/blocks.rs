@@ -13,20 +13,6 @@ pub(super) trait Blocks: fmt::Debug + Send {
     fn points(&self) -> u64;
 }
 
-/// No blocks, of an answer without points.
-#[derive(Debug)]
-pub(super) struct Nothing;
-
-impl Blocks for Nothing {
-    fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
-        None
-    }
-
-    fn points(&self) -> u64 {
-        0
-    }
-}
-
 /// An answer that could not be made to its end: a bug, for what can be refused is refused before.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the answer cannot be encoded: {0}")]

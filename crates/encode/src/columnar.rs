@@ -1,105 +1,43 @@
-//! Formats of columns: the Arrow IPC stream and file. Batches of rows go to a writer of the format, which
-//! fills memory that blocks take.
+//! Formats of columns: the Arrow IPC stream and file here, [Parquet](super::parquet) beside it. Rows go to a writer of
+//! the format, which fills memory that blocks take.
+
+use std::{fmt, mem};
 
 use arrow_array::RecordBatch;
 use arrow_ipc::writer::{FileWriter, StreamWriter};
-use arrow_schema::{ArrowError, SchemaRef};
+use arrow_schema::ArrowError;
 use bytes::Bytes;
 
 use super::{EncodeError, batches::Batches, blocks::Blocks, rows::Rows};
 
 /// A writer of a format.
 pub(super) trait Writer: Send {
-    fn write(&mut self, batch: &RecordBatch) -> Result<(), EncodeError>;
-    /// Writes the end.
-    fn finish(&mut self) -> Result<(), EncodeError>;
+    /// Writes the next rows and returns their number, or writes the end if there are no more.
+    fn write(&mut self, rows: &mut Rows) -> Result<Option<usize>, EncodeError>;
     /// The bytes written since they were last taken.
     fn written(&mut self) -> &mut Vec<u8>;
-}
-
-/// The Arrow IPC stream format: a schema, record batches, an end mark.
-pub(super) fn arrow_stream(schema: &SchemaRef) -> Result<impl Writer + 'static, EncodeError> {
-    StreamWriter::try_new(vec![], schema).map_err(EncodeError::of)
-}
-
-/// The Arrow IPC file format, also known as Feather version 2: the stream with a footer that says where
-/// batches lie.
-pub(super) fn arrow_file(schema: &SchemaRef) -> Result<impl Writer + 'static, EncodeError> {
-    FileWriter::try_new(vec![], schema).map_err(EncodeError::of)
-}
-
-impl Writer for StreamWriter<Vec<u8>> {
-    fn write(&mut self, batch: &RecordBatch) -> Result<(), EncodeError> {
-        done(Self::write(self, batch))
-    }
-
-    fn finish(&mut self) -> Result<(), EncodeError> {
-        done(Self::finish(self))
-    }
-
-    fn written(&mut self) -> &mut Vec<u8> {
-        self.get_mut()
-    }
-}
-
-impl Writer for FileWriter<Vec<u8>> {
-    fn write(&mut self, batch: &RecordBatch) -> Result<(), EncodeError> {
-        done(Self::write(self, batch))
-    }
-
-    fn finish(&mut self) -> Result<(), EncodeError> {
-        done(Self::finish(self))
-    }
-
-    fn written(&mut self) -> &mut Vec<u8> {
-        self.get_mut()
-    }
-}
-
-fn done(result: Result<(), ArrowError>) -> Result<(), EncodeError> {
-    result.map_err(EncodeError::of)
 }
 
 /// The blocks of an answer in columns.
 pub(super) struct Columnar<W> {
     rows: Rows,
-    batches: Batches,
     /// `None` once the end is written.
     writer: Option<W>,
-    block_bytes: usize,
     points: u64,
 }
 
 impl<W: Writer> Columnar<W> {
-    pub(super) fn new(rows: Rows, batches: Batches, writer: W, block_bytes: usize) -> Self {
+    pub(super) const fn new(rows: Rows, writer: W) -> Self {
         Self {
             rows,
-            batches,
             writer: Some(writer),
-            block_bytes,
             points: 0,
         }
     }
-
-    /// Writes a block of rows, or the end. Returns whether there is more.
-    fn write(&mut self, writer: &mut W) -> Result<bool, EncodeError> {
-        let fill = self.block_bytes / self.batches.row_bytes();
-        let Some(batch) = self.rows.next(fill) else {
-            if self.points == 0 {
-                // This batch brings the names of dictionaries, which readers need even without points.
-                writer.write(&self.batches.none()?)?;
-            }
-            writer.finish()?;
-            return Ok(false);
-        };
-        self.points += batch.points.len() as u64;
-        writer.write(&self.batches.make(batch)?)?;
-        Ok(true)
-    }
 }
 
-impl<W> std::fmt::Debug for Columnar<W> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl<W> fmt::Debug for Columnar<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Columnar")
             .field("rows", &self.rows)
             .field("points", &self.points)
@@ -114,14 +52,92 @@ impl<W: Writer> Blocks for Columnar<W> {
 
     fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
         let mut writer = self.writer.take()?;
-        let more = match self.write(&mut writer) {
-            Ok(more) => more,
+        let rows = match writer.write(&mut self.rows) {
+            Ok(rows) => rows,
             Err(error) => return Some(Err(error)),
         };
-        let written = std::mem::take(writer.written());
-        self.writer = more.then_some(writer);
+        self.points += rows.unwrap_or_default() as u64;
+        let written = mem::take(writer.written());
+        self.writer = rows.is_some().then_some(writer);
         Some(Ok(written.into()))
     }
+}
+
+/// A writer of Arrow IPC.
+pub(super) struct Arrow {
+    batches: Batches,
+    ipc: Ipc,
+    /// The rows of a batch.
+    fill: usize,
+    is_empty: bool,
+}
+
+enum Ipc {
+    /// A schema, record batches, an end mark.
+    Stream(StreamWriter<Vec<u8>>),
+    /// The file format, also known as Feather version 2: the stream with a footer that says where batches lie.
+    File(FileWriter<Vec<u8>>),
+}
+
+impl Arrow {
+    /// A stream or a file of batches, each of about so many bytes.
+    pub(super) fn new(batches: Batches, is_file: bool, bytes: usize) -> Result<Self, EncodeError> {
+        let schema = batches.schema();
+        let ipc = match is_file {
+            true => FileWriter::try_new(vec![], schema).map(Ipc::File),
+            false => StreamWriter::try_new(vec![], schema).map(Ipc::Stream),
+        };
+        Ok(Self {
+            ipc: ipc.map_err(EncodeError::of)?,
+            fill: bytes / batches.row_bytes(),
+            batches,
+            is_empty: true,
+        })
+    }
+}
+
+impl Writer for Arrow {
+    fn write(&mut self, rows: &mut Rows) -> Result<Option<usize>, EncodeError> {
+        let Some(batch) = rows.next(self.fill) else {
+            if self.is_empty {
+                // This batch brings the names of dictionaries, which readers need even without points.
+                self.ipc.write(&self.batches.none()?)?;
+            }
+            self.ipc.finish()?;
+            return Ok(None);
+        };
+        self.is_empty = false;
+        let count = batch.points.len();
+        self.ipc.write(&self.batches.make(batch)?)?;
+        Ok(Some(count))
+    }
+
+    fn written(&mut self) -> &mut Vec<u8> {
+        match &mut self.ipc {
+            Ipc::Stream(writer) => writer.get_mut(),
+            Ipc::File(writer) => writer.get_mut(),
+        }
+    }
+}
+
+impl Ipc {
+    fn write(&mut self, batch: &RecordBatch) -> Result<(), EncodeError> {
+        done(match self {
+            Self::Stream(writer) => writer.write(batch),
+            Self::File(writer) => writer.write(batch),
+        })
+    }
+
+    fn finish(&mut self) -> Result<(), EncodeError> {
+        done(match self {
+            Self::Stream(writer) => writer.finish(),
+            Self::File(writer) => writer.finish(),
+        })
+    }
+}
+
+fn done(result: Result<(), ArrowError>) -> Result<(), EncodeError> {
+    result.map_err(EncodeError::of)
 }
 
 #[cfg(test)]

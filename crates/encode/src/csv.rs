@@ -85,8 +85,6 @@ impl TextFormat for Csv {
         out.push(b'\n');
     }
 
-    fn end(&self, _points: u64, _out: &mut Vec<u8>) {}
-
     fn row_bytes(&self) -> usize {
         let longest = |names: &[String]| names.iter().map(String::len).max().unwrap_or(24);
         160 + self

@@ -15,21 +15,22 @@ struct Format {
 }
 
 /// Properties that some formats have.
-#[derive(Clone, Copy)]
-struct Traits {
+#[derive(Clone, Copy, Debug)]
+pub struct Traits {
     /// Browsers show an answer by themselves instead of saving it.
-    is_shown: bool,
+    pub is_shown: bool,
     /// Coordinates are `f32`, relative to a corner.
-    is_near: bool,
+    pub is_near: bool,
     /// `decimals` has an effect.
-    is_text: bool,
+    pub is_text: bool,
     /// The last line can be a summary.
-    has_summary: bool,
+    pub has_summary: bool,
     /// Readers want to know what plane coordinates are in.
-    has_crs: bool,
-    is_picture: bool,
+    pub has_crs: bool,
+    /// It is a picture.
+    pub is_picture: bool,
     /// Arrow and Parquet come with the feature `columnar`.
-    is_columnar: bool,
+    pub is_columnar: bool,
 }
 
 const BINARY: Traits = Traits {
@@ -57,91 +58,79 @@ const COLUMNS: Traits = Traits {
     ..BINARY
 };
 
-/// Declares the formats with their rows: those that are streamed, then those of files.
+/// Declares the formats with their rows.
 macro_rules! formats {
-    ($($group:ident: [$(
+    ($(
         $(#[$doc:meta])* $format:ident = $name:literal,
         $accepted:expr, $content_type:expr, $endings:expr, $traits:expr;
-    )*])*) => {
+    )*) => {
         /// The formats of an answer.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Encoding { $($($(#[$doc])* $format,)*)* }
+        pub enum Encoding { $($(#[$doc])* $format,)* }
 
         /// The rows, in the order of [`Encoding`].
-        const FORMATS: &[Format] = &[$($(Format {
+        const FORMATS: &[Format] = &[$(Format {
             name: $name,
             accepted: &$accepted,
             content_type: $content_type,
             endings: &$endings,
             traits: $traits,
-        },)*)*];
+        },)*];
 
-        $(const $group: &[Encoding] = &[$(Encoding::$format,)*];)*
+        impl Encoding {
+            /// All formats.
+            pub const ALL: &[Self] = &[$(Self::$format,)*];
+        }
     };
 }
 
 formats! {
-    STREAMED: [
-        /// One JSON document.
-        Json = "json", ["application/json"], None, ["json"], Traits { is_shown: true, ..TEXT };
-        /// One JSON document a line.
-        Ndjson = "ndjson", ["application/x-ndjson", "application/ndjson", "application/jsonl"], None,
-            ["ndjson", "jsonl"], Traits { has_summary: true, ..TEXT };
-        /// Comma-separated values.
-        Csv = "csv", ["text/csv"], Some("text/csv; charset=utf-8; header=present"), ["csv"], TEXT;
-        /// Interleaved little-endian `f32` pairs, relative to the box's lower corner.
-        F32 = "f32", ["application/vnd.strew.f32"], Some(BYTES), ["f32"], NEAR;
-        /// Interleaved little-endian `f64` pairs.
-        F64 = "f64", ["application/vnd.strew.f64", BYTES], Some(BYTES), ["f64"], BINARY;
-        /// One GeoJSON feature collection.
-        Geojson = "geojson", ["application/geo+json"], None, ["geojson"], Traits { has_crs: true, ..TEXT };
-        /// GeoJSON features as a text sequence.
-        Geojsonseq = "geojsonseq", ["application/geo+json-seq"], None, ["geojsonl", "geojsons", "geojsonseq"], TEXT;
-        /// A NumPy array of `f64`.
-        Npy = "npy", ["application/x-npy"], None, ["npy"], BINARY;
-        /// PLY vertices, binary and little-endian.
-        Ply = "ply", ["application/ply", "model/ply"], None, ["ply"], BINARY;
-        /// An Arrow IPC stream.
-        Arrow = "arrow", ["application/vnd.apache.arrow.stream"], None, ["arrows"], COLUMNS;
-        /// A picture in pixels.
-        Png = "png", ["image/png"], None, ["png"],
-            Traits { is_shown: true, is_picture: true, ..BINARY };
-        /// A picture of circles.
-        Svg = "svg", ["image/svg+xml"], None, ["svg"], Traits { is_shown: true, is_picture: true, ..TEXT };
-        /// A binary glTF file: meshes that are drawn at every point.
-        Glb = "glb", ["model/gltf-binary"], None, ["glb"], NEAR;
-        /// A USD stage as text: instancers.
-        Usda = "usda", ["model/vnd.usda"], None, ["usda"], NEAR;
-        /// The buffer of a Godot `MultiMesh`.
-        Multimesh = "multimesh", ["application/vnd.strew.multimesh"], Some(BYTES), ["multimesh"], NEAR;
-        /// Records of 16 bytes for graphics cards, relative to the box's lower corner.
-        Instances = "instances", ["application/vnd.strew.instances"], Some(BYTES), ["instances"], NEAR;
-    ]
-    OF_FILES: [
-        /// A Parquet file. Only the command line writes it.
-        Parquet = "parquet", ["application/vnd.apache.parquet"], None, ["parquet"],
-            Traits { has_crs: true, ..COLUMNS };
-        /// An Arrow IPC file. Only the command line writes it.
-        Feather = "feather", ["application/vnd.apache.arrow.file"], None, ["arrow", "feather"], COLUMNS;
-    ]
+    /// One JSON document.
+    Json = "json", ["application/json"], None, ["json"], Traits { is_shown: true, ..TEXT };
+    /// One JSON document a line.
+    Ndjson = "ndjson", ["application/x-ndjson", "application/ndjson", "application/jsonl"], None,
+        ["ndjson", "jsonl"], Traits { has_summary: true, ..TEXT };
+    /// Comma-separated values.
+    Csv = "csv", ["text/csv"], Some("text/csv; charset=utf-8; header=present"), ["csv"], TEXT;
+    /// Interleaved little-endian `f32` pairs, relative to the box's lower corner.
+    F32 = "f32", ["application/vnd.strew.f32"], Some(BYTES), ["f32"], NEAR;
+    /// Interleaved little-endian `f64` pairs.
+    F64 = "f64", ["application/vnd.strew.f64", BYTES], Some(BYTES), ["f64"], BINARY;
+    /// One GeoJSON feature collection.
+    Geojson = "geojson", ["application/geo+json"], None, ["geojson"], Traits { has_crs: true, ..TEXT };
+    /// GeoJSON features as a text sequence.
+    Geojsonseq = "geojsonseq", ["application/geo+json-seq"], None, ["geojsonl", "geojsons", "geojsonseq"], TEXT;
+    /// A NumPy array of `f64`.
+    Npy = "npy", ["application/x-npy"], None, ["npy"], BINARY;
+    /// PLY vertices, binary and little-endian.
+    Ply = "ply", ["application/ply", "model/ply"], None, ["ply"], BINARY;
+    /// An Arrow IPC stream.
+    Arrow = "arrow", ["application/vnd.apache.arrow.stream"], None, ["arrows"], COLUMNS;
+    /// A picture in pixels.
+    Png = "png", ["image/png"], None, ["png"],
+        Traits { is_shown: true, is_picture: true, ..BINARY };
+    /// A picture of circles.
+    Svg = "svg", ["image/svg+xml"], None, ["svg"], Traits { is_shown: true, is_picture: true, ..TEXT };
+    /// A binary glTF file: meshes that are drawn at every point.
+    Glb = "glb", ["model/gltf-binary"], None, ["glb"], NEAR;
+    /// A USD stage as text: instancers.
+    Usda = "usda", ["model/vnd.usda"], None, ["usda"], NEAR;
+    /// The buffer of a Godot `MultiMesh`.
+    Multimesh = "multimesh", ["application/vnd.strew.multimesh"], Some(BYTES), ["multimesh"], NEAR;
+    /// Records of 16 bytes for graphics cards, relative to the box's lower corner.
+    Instances = "instances", ["application/vnd.strew.instances"], Some(BYTES), ["instances"], NEAR;
+    /// A Parquet file.
+    Parquet = "parquet", ["application/vnd.apache.parquet"], None, ["parquet"],
+        Traits { has_crs: true, ..COLUMNS };
+    /// An Arrow IPC file.
+    Feather = "feather", ["application/vnd.apache.arrow.file"], None, ["arrow", "feather"], COLUMNS;
 }
 
 const BYTES: &str = "application/octet-stream";
 
 impl Encoding {
-    /// The formats that only the command line writes, to files.
-    pub const FILES: &[Self] = OF_FILES;
-
-    /// The formats that are streamed.
-    pub const ALL: &[Self] = STREAMED;
-
     const fn format(self) -> &'static Format {
         &FORMATS[self as usize]
-    }
-
-    /// All formats, the streamed ones first.
-    pub fn every() -> impl Iterator<Item = Self> {
-        STREAMED.iter().chain(OF_FILES).copied()
     }
 
     /// The name in queries.
@@ -153,25 +142,19 @@ impl Encoding {
     /// The format with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::every().find(|encoding| encoding.name() == name)
+        (Self::ALL.iter().copied()).find(|encoding| encoding.name() == name)
     }
 
     /// The format of a file whose name has an ending: `arrow` is that of files.
     #[must_use]
     pub fn of_ending(ending: &str) -> Option<Self> {
-        Self::every().find(|encoding| encoding.format().endings.contains(&ending))
-    }
-
-    /// Whether the daemon streams it; other formats are for files only.
-    #[must_use]
-    pub fn is_streamed(self) -> bool {
-        Self::ALL.contains(&self)
+        (Self::ALL.iter().copied()).find(|encoding| encoding.format().endings.contains(&ending))
     }
 
     /// Whether this build writes it: Arrow and Parquet come with the feature `columnar`.
     #[must_use]
     pub const fn is_written(self) -> bool {
-        cfg!(feature = "columnar") || !self.format().traits.is_columnar
+        cfg!(feature = "columnar") || !self.traits().is_columnar
     }
 
     /// The media types that clients may accept, the usual one first.
@@ -183,12 +166,9 @@ impl Encoding {
     /// The content type of the format when a client names it.
     #[must_use]
     pub const fn content_type(self) -> &'static str {
-        match self.format() {
-            Format {
-                content_type: Some(own),
-                ..
-            } => own,
-            Format { accepted, .. } => accepted[0],
+        match self.format().content_type {
+            Some(own) => own,
+            None => self.accepted()[0],
         }
     }
 
@@ -198,55 +178,21 @@ impl Encoding {
         format!("points.{}", self.format().endings[0])
     }
 
-    /// Whether browsers show an answer by themselves instead of saving it.
+    /// The properties of the format.
     #[must_use]
-    pub const fn is_shown(self) -> bool {
-        self.format().traits.is_shown
+    pub const fn traits(self) -> &'static Traits {
+        &self.format().traits
     }
 
-    /// Whether coordinates are `f32`, relative to a corner.
-    #[must_use]
-    pub const fn is_near(self) -> bool {
-        self.format().traits.is_near
-    }
-
-    /// Whether `decimals` has an effect.
-    #[must_use]
-    pub const fn is_text(self) -> bool {
-        self.format().traits.is_text
-    }
-
-    /// Whether its last line can be a summary.
-    #[must_use]
-    pub const fn has_summary(self) -> bool {
-        self.format().traits.has_summary
-    }
-
-    /// Whether readers want to know what plane coordinates are in.
-    #[must_use]
-    pub const fn has_crs(self) -> bool {
-        self.format().traits.has_crs
-    }
-
-    /// Whether it is a picture.
-    #[must_use]
-    pub const fn is_picture(self) -> bool {
-        self.format().traits.is_picture
-    }
-
-    /// The names of formats, for a text.
-    pub fn names(all: &[Self]) -> String {
-        all.iter()
-            .copied()
-            .map(Self::name)
-            .collect::<Vec<_>>()
-            .join(", ")
+    /// The names of the formats that this build writes, for a text.
+    pub fn names() -> String {
+        Self::names_where(Self::is_written)
     }
 
     /// The names of the formats that some test holds for, for an error.
     pub fn names_where(holds: impl Fn(Self) -> bool) -> String {
-        let holding: Vec<Self> = Self::every().filter(|encoding| holds(*encoding)).collect();
-        Self::names(&holding)
+        let holding = Self::ALL.iter().filter(|encoding| holds(**encoding));
+        holding.map(|of| of.name()).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -257,7 +203,7 @@ mod tests {
     #[test]
     fn a_name_an_ending_and_a_media_type_are_of_one_format_alone() {
         let every = || FORMATS.iter();
-        assert_eq!(every().count(), Encoding::every().count());
+        assert_eq!(every().count(), Encoding::ALL.len());
         let lists: [Vec<&str>; 3] = [
             every().map(|format| format.name).collect(),
             every().flat_map(|format| format.endings).copied().collect(),
@@ -269,7 +215,7 @@ mod tests {
             list.dedup();
             assert_eq!(list.len(), all, "{list:?}");
         }
-        for encoding in Encoding::every() {
+        for &encoding in Encoding::ALL {
             assert_eq!(Encoding::from_name(encoding.name()), Some(encoding));
             // The name of a format is an ending of its files; `arrow` is that of files of Arrow.
             let of_ending = Encoding::of_ending(encoding.name());

@@ -16,14 +16,8 @@ use super::{
 /// A collection: the head's members, then a feature a line.
 #[derive(Debug)]
 pub(super) struct Collection {
-    head: Head,
-    members: Members,
-}
-
-impl Collection {
-    pub(super) const fn new(head: Head, members: Members) -> Self {
-        Self { head, members }
-    }
+    pub(super) head: Head,
+    pub(super) members: Members,
 }
 
 impl TextFormat for Collection {
@@ -46,7 +40,7 @@ impl TextFormat for Collection {
         write_feature(&self.members, row, out);
     }
 
-    fn end(&self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\n]}\n");
     }
 
@@ -58,25 +52,15 @@ impl TextFormat for Collection {
 /// A text sequence: each feature between a record separator and a line feed.
 #[derive(Debug)]
 pub(super) struct Sequence {
-    members: Members,
-}
-
-impl Sequence {
-    pub(super) const fn new(members: Members) -> Self {
-        Self { members }
-    }
+    pub(super) members: Members,
 }
 
 impl TextFormat for Sequence {
-    fn begin(&self, _out: &mut Vec<u8>) {}
-
     fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
         out.push(0x1e);
         write_feature(&self.members, row, out);
         out.push(b'\n');
     }
-
-    fn end(&self, _points: u64, _out: &mut Vec<u8>) {}
 
     fn row_bytes(&self) -> usize {
         ROW_BYTES + self.members.bytes()

@@ -1,4 +1,6 @@
-//! One JSON document: `{"query":…,"table":…,"count":N,"points":[…]}`, a point a line.
+//! JSON: one document, `{"query":…,"table":…,"count":N,"points":[…]}`, a point a line; or a document a line.
+
+use serde::Serialize;
 
 use super::{
     head::Head,
@@ -8,16 +10,11 @@ use super::{
     writer::Writer,
 };
 
+/// One document.
 #[derive(Debug)]
 pub(super) struct Json {
-    head: Head,
-    members: Members,
-}
-
-impl Json {
-    pub(super) const fn new(head: Head, members: Members) -> Self {
-        Self { head, members }
-    }
+    pub(super) head: Head,
+    pub(super) members: Members,
 }
 
 impl TextFormat for Json {
@@ -33,8 +30,38 @@ impl TextFormat for Json {
         self.members.write_point(row, out);
     }
 
-    fn end(&self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\n]}\n");
+    }
+
+    fn row_bytes(&self) -> usize {
+        160 + self.members.bytes()
+    }
+}
+
+/// A document a line: the points, then the summary, if there is one.
+#[derive(Debug)]
+pub(super) struct Ndjson {
+    pub(super) last: Option<Last>,
+    pub(super) members: Members,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Last {
+    pub(super) summary: Head,
+}
+
+impl TextFormat for Ndjson {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
+        self.members.write_point(row, out);
+        out.push(b'\n');
+    }
+
+    fn end(&self, out: &mut Vec<u8>) {
+        if let Some(last) = &self.last {
+            write_json(last, out);
+            out.push(b'\n');
+        }
     }
 
     fn row_bytes(&self) -> usize {

@@ -17,7 +17,7 @@ const MOST_BYTES: usize = 1000;
 pub const F32: &str = r#"[{"name":"x","type":"f32"},{"name":"y","type":"f32"}]"#;
 
 /// A column of records.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 struct Entry<'a> {
     name: &'a str,
     /// How its values are stored.
@@ -38,29 +38,23 @@ struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    const fn new(name: &'a str, kind: &'static str) -> Self {
+    fn new(name: &'a str, kind: &'static str) -> Self {
         Self {
             name,
             kind,
-            names: None,
-            names_left_out: None,
-            low: None,
-            high: None,
+            ..Self::default()
         }
     }
 
     /// With the names of a column, or with their number if there is no room for them.
     fn named(self, column: &'a Column, has_names: bool) -> Self {
-        match &column.kind {
-            Kind::Dictionary(names) if has_names => Self {
-                names: Some(names),
-                ..self
-            },
-            Kind::Dictionary(names) => Self {
-                names_left_out: Some(names.len()),
-                ..self
-            },
-            Kind::Number => self,
+        let Kind::Dictionary(names) = &column.kind else {
+            return self;
+        };
+        Self {
+            names: has_names.then_some(names),
+            names_left_out: (!has_names).then_some(names.len()),
+            ..self
         }
     }
 }

@@ -42,10 +42,12 @@ impl Output {
     /// The coordinates of an answer whose parts have a lower `corner`.
     pub fn coordinates(&self, corner: impl FnOnce() -> Place) -> Coordinates {
         match (self.encoding, self.relative_to) {
-            (encoding, origin) if encoding.is_near() => {
+            (encoding, origin) if encoding.traits().is_near => {
                 Coordinates::Near(origin.unwrap_or_else(corner))
             }
-            (encoding, Some(origin)) if !encoding.is_picture() => Coordinates::Relative(origin),
+            (encoding, Some(origin)) if !encoding.traits().is_picture => {
+                Coordinates::Relative(origin)
+            }
             _ => Coordinates::World,
         }
     }
@@ -62,6 +64,16 @@ impl Output {
             crs: None,
             dot: None,
             zstd: ZSTD_LEVEL,
+        }
+    }
+
+    /// The bytes in which an answer is made besides its blocks: those of a picture, or of the rows of a group.
+    #[must_use]
+    pub const fn room(&self) -> usize {
+        match self.encoding {
+            Encoding::Png => (self.size as usize).pow(2),
+            Encoding::Parquet => 16 << 20,
+            _ => 0,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Parquet, for files: row groups of a fixed number of rows, compressed by zstd.
+//! Parquet: row groups of a fixed number of rows, compressed by zstd.
 //!
 //! The file is GeoParquet 1.1: a column `geometry` of points in WKB beside x and y. WKB is what all
 //! readers know. A row group is held until it is complete, so this takes more memory than the other
@@ -11,11 +11,10 @@
 //! Columns go to the crate's own writer one by one. Its writer of Arrow batches would do the same and
 //! takes two minutes longer to compile.
 
-use std::{fmt, sync::Arc};
+use std::sync::Arc;
 
 use arrow_ipc::writer::{DictionaryTracker, IpcDataGenerator, IpcWriteOptions};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
-use bytes::Bytes;
 use parquet::{
     basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical, ZstdLevel},
     errors::ParquetError,
@@ -31,7 +30,7 @@ use serde_json::{Value, json};
 use super::{
     EncodeError,
     batches::Batches,
-    blocks::Blocks,
+    columnar::Writer,
     head::Head,
     row_group::RowGroup,
     rows::{Batch, Rows},
@@ -42,7 +41,7 @@ use super::{
 const COORDINATES: usize = 4;
 
 /// Rows of a row group: about 5 MB before they are compressed.
-const GROUP_ROWS: usize = 1 << 16;
+pub(super) const GROUP_ROWS: usize = 1 << 16;
 
 /// Rows that are taken at once.
 const BATCH_ROWS: usize = 1 << 13;
@@ -50,25 +49,22 @@ const BATCH_ROWS: usize = 1 << 13;
 /// The column of points as WKB.
 const GEOMETRY: &str = "geometry";
 
-/// The blocks of a file: a row group each, then the footer.
+/// A writer of a file: row groups, then the footer.
 pub(super) struct Parquet {
-    rows: Rows,
     group: RowGroup,
-    /// `None` once the end is written.
-    writer: Option<SerializedFileWriter<Vec<u8>>>,
-    points: u64,
+    writer: SerializedFileWriter<Vec<u8>>,
+    columns: usize,
     geo: Geo,
 }
 
 impl Parquet {
     /// The rows, compressed at a level of zstd, or plain at level 0. The reference system is PROJJSON.
     pub(super) fn new(
-        rows: Rows,
+        schema: &Schema,
         head: &Head,
         crs: Option<Value>,
         level: u8,
     ) -> Result<Self, EncodeError> {
-        let schema = rows.schema();
         let compression = match level {
             0 => Compression::UNCOMPRESSED,
             _ => Compression::ZSTD(ZstdLevel::try_new(level.into()).map_err(EncodeError::of)?),
@@ -93,66 +89,46 @@ impl Parquet {
                 .set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
         }
         let message = message(schema).map_err(EncodeError::of)?;
-        let writer = SerializedFileWriter::new(vec![], message.into(), properties.build().into());
+        let properties = properties.build().into();
+        let writer = SerializedFileWriter::new(vec![], message.into(), properties);
+        let mut writer = writer.map_err(EncodeError::of)?;
+        // The mark of the format.
+        writer.flush().map_err(EncodeError::of)?;
         Ok(Self {
             group: RowGroup::new(schema),
             geo: Geo::new(crs, schema.is_in_space()),
-            writer: Some(writer.map_err(EncodeError::of)?),
-            rows,
-            points: 0,
+            writer,
+            columns: COORDINATES + schema.columns().len(),
         })
     }
+}
 
-    /// Writes a row group or the end. Returns whether there is more.
-    fn write(&mut self, writer: &mut SerializedFileWriter<Vec<u8>>) -> Result<bool, EncodeError> {
-        let mut room = GROUP_ROWS;
-        while room > 0
-            && let Some(batch) = self.rows.next(room.min(BATCH_ROWS))
+impl Writer for Parquet {
+    /// Writes a row group, whose bytes depend on its rows alone.
+    fn write(&mut self, rows: &mut Rows) -> Result<Option<usize>, EncodeError> {
+        let mut count = 0;
+        while count < GROUP_ROWS
+            && let Some(batch) = rows.next((GROUP_ROWS - count).min(BATCH_ROWS))
         {
-            self.points += batch.points.len() as u64;
             self.geo.reach(&batch);
-            room -= batch.points.len();
+            count += batch.points.len();
             self.group.push(batch)?;
         }
-        if room < GROUP_ROWS {
-            let mut columns = writer.next_row_group().map_err(EncodeError::of)?;
+        if count > 0 {
+            let mut columns = self.writer.next_row_group().map_err(EncodeError::of)?;
             self.group.write(&mut columns).map_err(EncodeError::of)?;
             columns.close().map_err(EncodeError::of)?;
+            return Ok(Some(count));
         }
-        if room > 0 {
-            let geo = KeyValue::new("geo".into(), self.geo.text());
-            writer.append_key_value_metadata(geo);
-            writer.finish().map_err(EncodeError::of)?;
-            let columns = COORDINATES + self.rows.schema().columns().len();
-            know_order(writer.inner_mut(), columns);
-        }
-        Ok(room == 0)
-    }
-}
-
-impl Blocks for Parquet {
-    fn points(&self) -> u64 {
-        self.points
+        let geo = KeyValue::new("geo".into(), self.geo.text());
+        self.writer.append_key_value_metadata(geo);
+        self.writer.finish().map_err(EncodeError::of)?;
+        know_order(self.writer.inner_mut(), self.columns);
+        Ok(None)
     }
 
-    fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
-        let mut writer = self.writer.take()?;
-        let more = match self.write(&mut writer) {
-            Ok(more) => more,
-            Err(error) => return Some(Err(error)),
-        };
-        let written = std::mem::take(writer.inner_mut());
-        self.writer = more.then_some(writer);
-        Some(Ok(written.into()))
-    }
-}
-
-impl fmt::Debug for Parquet {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Parquet")
-            .field("rows", &self.rows)
-            .field("points", &self.points)
-            .finish_non_exhaustive()
+    fn written(&mut self) -> &mut Vec<u8> {
+        self.writer.inner_mut()
     }
 }
 

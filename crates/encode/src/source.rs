@@ -140,20 +140,35 @@ macro_rules! common {
     };
 }
 
+/// The methods that plans of unbounded sets have, too.
+macro_rules! unbounded {
+    ($bound:path) => {
+        common!($bound);
+
+        fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
+            let cursors = self.cursors(numbers).into_iter();
+            cursors.map(|cursor| cursor.map(Into::into)).collect()
+        }
+
+        fn beginning(&self) -> Option<Mark> {
+            from_beginning(self)
+        }
+
+        fn spacing(&self) -> f64 {
+            self.placement().spacing.get()
+        }
+
+        fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
+            Arc::new(self.clone().stopped_by(stop.clone()))
+        }
+    };
+}
+
 impl Source for Plan {
-    common!(Bound::Plane);
+    unbounded!(Bound::Plane);
 
     fn plane(&self) -> Option<&Plan> {
         Some(self)
-    }
-
-    fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
-        let cursors = self.cursors(numbers).into_iter();
-        cursors.map(|cursor| cursor.map(Into::into)).collect()
-    }
-
-    fn beginning(&self) -> Option<Mark> {
-        from_beginning(self)
     }
 
     fn region(&self) -> Region {
@@ -164,16 +179,8 @@ impl Source for Plan {
         self.origin()
     }
 
-    fn spacing(&self) -> f64 {
-        self.placement().spacing.get()
-    }
-
     fn walk(&self) -> Box<dyn Walk> {
         Box::new(self.blocks())
-    }
-
-    fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
-        Arc::new(self.clone().stopped_by(stop.clone()))
     }
 }
 
@@ -203,19 +210,10 @@ impl Source for PeriodicPlan {
 }
 
 impl Source for space::Plan {
-    common!(Bound::Space);
-
-    fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
-        let cursors = self.cursors(numbers).into_iter();
-        cursors.map(|cursor| cursor.map(Into::into)).collect()
-    }
+    unbounded!(Bound::Space);
 
     fn space(&self) -> Option<&space::Plan> {
         Some(self)
-    }
-
-    fn beginning(&self) -> Option<Mark> {
-        from_beginning(self)
     }
 
     fn region(&self) -> Region {
@@ -232,19 +230,11 @@ impl Source for space::Plan {
         [x, y]
     }
 
-    fn spacing(&self) -> f64 {
-        self.placement().spacing.get()
-    }
-
     fn walk(&self) -> Box<dyn Walk> {
         Box::new(Volume {
             blocks: self.blocks_points(),
             points: vec![],
         })
-    }
-
-    fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
-        Arc::new(self.clone().stopped_by(stop.clone()))
     }
 }
 

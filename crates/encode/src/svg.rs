@@ -72,7 +72,7 @@ impl TextFormat for Svg {
         out.constant(b"\"/>\n");
     }
 
-    fn end(&self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(b"</g>\n</svg>\n");
     }
 

@@ -20,11 +20,11 @@ use super::{
 /// A text format: what stands before, at, and after the rows.
 pub(super) trait TextFormat: Sync {
     /// Writes what comes before the first row.
-    fn begin(&self, out: &mut Vec<u8>);
+    fn begin(&self, _out: &mut Vec<u8>) {}
     /// Writes a row; `first` means that none was written before.
     fn row(&self, row: Row<'_>, first: bool, out: &mut Writer<'_>);
-    /// Writes what comes after the last of `points` rows.
-    fn end(&self, points: u64, out: &mut Vec<u8>);
+    /// Writes what comes after the last row.
+    fn end(&self, _out: &mut Vec<u8>) {}
     /// More than is usually written for a row.
     fn row_bytes(&self) -> usize;
 }
@@ -82,7 +82,7 @@ impl<T: TextFormat> TextBlocks<T> {
         };
         let per_block = (self.block_bytes / self.row_bytes).max(1);
         let Some(batch) = self.rows.next(per_block * blocks) else {
-            self.format.end(self.points, &mut before);
+            self.format.end(&mut before);
             self.ready.push_back(before.into());
             self.state = State::Over;
             return;

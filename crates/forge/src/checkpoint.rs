@@ -33,81 +33,35 @@ pub struct Checkpoint {
     pub(crate) steps: u32,
     /// Steps of all phases.
     pub(crate) of: u32,
-    /// The state of the phase, component by component.
-    pub(crate) state: State<1>,
+    /// The state of the phase.
+    pub(crate) state: State,
 }
 
-/// All that decides the next step of a phase.
+/// All that decides the next step of a phase. Vectors, of the plane or of space, are lists of their components.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct State<const D: usize> {
+pub struct State {
     /// The steps done in the phase.
     pub steps: u32,
     /// A vector for each block, in mean spacings: the best so far, or the last.
-    pub moves: Vec<[f64; D]>,
+    pub moves: Vec<f64>,
     /// The phase's own numbers, and lists of vectors, each empty or as long as the moves.
     pub(crate) numbers: [f64; 4],
-    pub(crate) lists: [Vec<[f64; D]>; 3],
+    pub(crate) lists: [Vec<f64>; 3],
 }
 
-impl<const D: usize> State<D> {
+impl State {
     /// The state before any step of a phase.
-    pub fn start(moves: Vec<[f64; D]>) -> Self {
+    pub fn start(moves: Vec<f64>) -> Self {
         Self {
             moves,
             ..Self::default()
         }
     }
-
-    /// The state with the components of its vectors grouped anew, or `None` if lists have no whole number of vectors or are
-    /// neither empty nor as long as the moves.
-    fn regrouped<const E: usize>(&self) -> Option<State<E>> {
-        let cut = |list: &Vec<[f64; D]>| {
-            let (all, rest) = list.as_flattened().as_chunks::<E>();
-            rest.is_empty().then(|| all.to_vec())
-        };
-        let [a, b, c] = self.lists.each_ref().map(cut);
-        let (moves, lists) = (cut(&self.moves)?, [a?, b?, c?]);
-        let fits = |list: &Vec<_>| list.is_empty() || list.len() == moves.len();
-        lists.iter().all(fits).then_some(State {
-            steps: self.steps,
-            moves,
-            numbers: self.numbers,
-            lists,
-        })
-    }
 }
 
-/// A [`State`] of any dimension.
-pub trait Resumable: Sized {
-    /// The steps done in the phase.
-    fn steps(&self) -> u32;
-
-    /// The number of vectors.
-    fn blocks(&self) -> usize;
-
-    /// The state for a checkpoint.
-    fn keep(&self) -> State<1>;
-
-    /// The state of a checkpoint, or `None` if it is another one.
-    fn resume(kept: &State<1>) -> Option<Self>;
-}
-
-impl<const D: usize> Resumable for State<D> {
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-
-    fn blocks(&self) -> usize {
-        self.moves.len()
-    }
-
-    fn keep(&self) -> State<1> {
-        self.regrouped().unwrap_or_default()
-    }
-
-    fn resume(kept: &State<1>) -> Option<Self> {
-        kept.regrouped()
-    }
+/// The vectors of a list of components.
+pub(crate) fn vectors<const D: usize>(list: &[f64]) -> &[[f64; D]] {
+    list.as_chunks().0
 }
 
 impl Checkpoint {
@@ -150,7 +104,7 @@ impl Checkpoint {
         let counts = [self.phase, self.steps, self.of, *steps, job];
         bytes.extend(counts.iter().chain(&lengths).flat_map(|n| n.to_le_bytes()));
         bytes.extend(self.job.as_bytes());
-        let lists = lists.into_iter().flatten().flatten();
+        let lists = lists.into_iter().flatten();
         bytes.extend(numbers.iter().chain(lists).flat_map(|v| v.to_le_bytes()));
         let digest = Digest::of(&bytes);
         bytes.extend(digest.as_bytes());
@@ -177,8 +131,11 @@ impl Checkpoint {
         let counts: Option<Vec<u32>> = (0..9).map(|_| rest.u32()).collect();
         let [phase, steps, of, own_steps, job, moves, a, b, c] = counts?.try_into().ok()?;
         let job = String::from_utf8(rest.take(job as usize)?.to_vec()).ok()?;
-        let numbers = rest.numbers(4)?.as_flattened().try_into().ok()?;
-        Some(Self {
+        let numbers = rest.numbers(4)?.try_into().ok()?;
+        let moves = rest.numbers(moves)?;
+        let lists = [rest.numbers(a)?, rest.numbers(b)?, rest.numbers(c)?];
+        let fits = |list: &Vec<f64>| list.is_empty() || list.len() == moves.len();
+        lists.iter().all(fits).then_some(Self {
             job,
             phase,
             steps,
@@ -186,8 +143,8 @@ impl Checkpoint {
             state: State {
                 steps: own_steps,
                 numbers,
-                moves: rest.numbers(moves)?,
-                lists: [rest.numbers(a)?, rest.numbers(b)?, rest.numbers(c)?],
+                moves,
+                lists,
             },
         })
     }
@@ -218,11 +175,8 @@ impl Checkpoint {
 
 /// The refusal of a checkpoint.
 pub(crate) fn wrong(value: impl ToString) -> ForgeError {
-    ForgeError::field(
-        "checkpoint",
-        value,
-        "one written by this version of the forge",
-    )
+    let allowed = "one written by this version of the forge";
+    ForgeError::field("checkpoint", value, allowed)
 }
 
 /// The front of a file's content.
@@ -237,10 +191,14 @@ impl<'a> Reader<'a> {
         Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }
 
-    fn numbers(&mut self, count: u32) -> Option<Vec<[f64; 1]>> {
+    fn numbers(&mut self, count: u32) -> Option<Vec<f64>> {
         let (bytes, _) = self.take((count as usize).checked_mul(8)?)?.as_chunks();
-        let number = |bytes: &[u8; 8]| [f64::from_le_bytes(*bytes)];
-        Some(bytes.iter().map(number).collect())
+        Some(
+            bytes
+                .iter()
+                .map(|&bytes| f64::from_le_bytes(bytes))
+                .collect(),
+        )
     }
 }
 
@@ -256,9 +214,9 @@ mod tests {
             of: 40,
             state: State {
                 steps: 3,
-                moves: [0.25, -1e-300, f64::MIN_POSITIVE, 3.0].map(|v| [v]).into(),
+                moves: vec![0.25, -1e-300, f64::MIN_POSITIVE, 3.0],
                 numbers: [0.5, f64::INFINITY, 0.0, -1.0],
-                lists: [vec![[1.0]; 4], vec![], vec![]],
+                lists: [vec![1.0; 4], vec![], vec![]],
             },
         }
     }
@@ -296,12 +254,9 @@ mod tests {
 
     #[test]
     fn lists_are_of_all_blocks_or_empty() {
-        let mut kept = checkpoint().state;
-        let state = State::<2>::resume(&kept).expect("two vectors");
-        assert_eq!(state.moves[1], [f64::MIN_POSITIVE, 3.0]);
-        assert_eq!(state.keep(), kept);
-        assert!(State::<3>::resume(&kept).is_none());
-        kept.lists[2] = vec![[1.0]; 2];
-        assert!(State::<2>::resume(&kept).is_none());
+        let mut kept = checkpoint();
+        kept.state.lists[2] = vec![1.0; 2];
+        let error = Checkpoint::from_bytes(&kept.to_bytes()).expect_err("refused");
+        assert!(error.to_string().contains("damaged"), "{error}");
     }
 }

@@ -4,7 +4,6 @@ use std::time::{Duration, Instant};
 
 use crate::{
     ForgeError,
-    checkpoint::Resumable as _,
     curve::LeastCorrelation,
     forge::{Task, Work as _},
 };
@@ -30,7 +29,7 @@ pub struct Estimate {
 const LISTS: u32 = 6;
 
 /// Estimates the cost of a job from a few steps, which take a few percent of its time.
-pub fn estimate(job: &impl Task) -> Result<Estimate, ForgeError> {
+pub fn estimate<J: Task>(job: &J) -> Result<Estimate, ForgeError> {
     let plan = job.plan()?;
     let phases = plan.phases();
     let (_, measured_points, time) = plan.judging();
@@ -56,6 +55,6 @@ pub fn estimate(job: &impl Task) -> Result<Estimate, ForgeError> {
         estimate.pairs = estimate.pairs.max(phase.pairs() as u64);
         state = phase.end(state)?;
     }
-    estimate.blocks = state.blocks() as u64;
+    estimate.blocks = (state.moves.len() / J::Plan::AXES) as u64;
     Ok(estimate)
 }

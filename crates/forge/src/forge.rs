@@ -7,7 +7,7 @@ use strew_core::{Table, table::Figures};
 
 use crate::{
     Checkpoint, ForgeError,
-    checkpoint::{Resumable, wrong},
+    checkpoint::{State, wrong},
     curve::LeastCorrelation,
     judge::{Complaint, Nearness},
     watch::{Meter, Phase, Stage, Watch, work_off},
@@ -24,22 +24,23 @@ pub trait Task {
 
 /// A checked job, as the driver works it off.
 pub trait Work {
-    type State: Resumable;
     type Table;
+    /// The number of components of a vector.
+    const AXES: usize;
 
     /// Everything that decides the result but the phases, as lines of `name = value`. Two jobs with equal lines take the
     /// same steps.
     fn identity(&self) -> String;
 
     /// The random start.
-    fn start(&self) -> Self::State;
+    fn start(&self) -> State;
 
-    fn phases(&self) -> Vec<Box<dyn Phase<Self::State> + '_>>;
+    fn phases(&self) -> Vec<Box<dyn Phase + '_>>;
 
     /// The table after some of all steps, without ranks.
     fn table(
         &self,
-        state: &Self::State,
+        state: &State,
         steps: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Self::Table, ForgeError>;
@@ -109,7 +110,7 @@ impl Checkpoint {
 }
 
 /// Everything that decides the result of a job.
-fn identity<W: Work>(plan: &W, phases: &[Box<dyn Phase<W::State> + '_>]) -> String {
+fn identity<W: Work>(plan: &W, phases: &[Box<dyn Phase + '_>]) -> String {
     let phases = phases
         .iter()
         .map(|phase| format!("phase = {}\n", phase.describe()));
@@ -127,28 +128,30 @@ fn run<W: Work>(
         None => (0, plan.start()),
         Some(from) => {
             from.check(&job)?;
-            let state = W::State::resume(&from.state).ok_or_else(|| wrong("of another state"))?;
-            (from.phase as usize, state)
+            if !from.state.moves.len().is_multiple_of(W::AXES) {
+                return Err(wrong("of another state"));
+            }
+            (from.phase as usize, from.state)
         }
     };
-    let steps = |phases: &[Box<dyn Phase<_> + '_>]| phases.iter().map(|phase| phase.steps()).sum();
+    let steps = |phases: &[Box<dyn Phase + '_>]| phases.iter().map(|phase| phase.steps()).sum();
     let (count, of): (usize, u32) = (phases.len(), steps(&phases));
     let mut done: u32 = steps(&phases[..first.min(count)]);
-    let checkpoint = |phase: usize, steps, state: &W::State| {
+    let checkpoint = |phase: usize, steps, state: &State| {
         watch.checkpoint(&Checkpoint {
             job: job.clone(),
             phase: phase as u32,
             steps,
             of,
-            state: state.keep(),
+            state: state.clone(),
         });
     };
-    let mut meter = Meter::from(watch, Stage::Optimizing, of, done + state.steps());
+    let mut meter = Meter::from(watch, Stage::Optimizing, of, done + state.steps);
     let mut is_done = true;
     for (number, mut phase) in phases.into_iter().enumerate().skip(first) {
-        let mut keep = |state: &W::State| checkpoint(number, done + state.steps(), state);
+        let mut keep = |state: &State| checkpoint(number, done + state.steps, state);
         is_done = work_off(&mut *phase, &mut state, &mut meter, &mut keep);
-        done += state.steps();
+        done += state.steps;
         state = phase.end(state)?;
         if !is_done {
             break;

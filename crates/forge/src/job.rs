@@ -10,7 +10,7 @@ use strew_core::{
 
 use crate::{
     ForgeError,
-    checkpoint::State,
+    checkpoint::{State, vectors},
     curve::{LeastCorrelation, Target, to_parameters},
     forge::{Task, Work},
     judge::{Bound, Complaint, Panel, bounds_of_curve, complaints},
@@ -170,8 +170,8 @@ impl Task for Job {
 }
 
 impl Work for Plan {
-    type State = State<2>;
     type Table = Table;
+    const AXES: usize = 2;
 
     fn identity(&self) -> String {
         let provenance = self.provenance(self.steps);
@@ -193,33 +193,28 @@ impl Work for Plan {
         lines.into_iter().map(line).collect()
     }
 
-    fn start(&self) -> State<2> {
+    fn start(&self) -> State {
         let (blocks, reach) = (self.domain.blocks(), self.profile.jitter);
-        State::start(jitter(blocks, reach, self.job.seed))
+        State::start(jitter::<2>(blocks, reach, self.job.seed).into_flattened())
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<State<2>> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase + '_>> {
         let recipe = &self.profile.recipe;
         recipe.phases(&self.domain, self.target.as_ref(), self.steps)
     }
 
     fn table(
         &self,
-        state: &State<2>,
+        state: &State,
         [steps, _]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
         let unit = 1.0 / self.domain.scale();
-        let too_long = || {
-            ForgeError::field(
-                "displacement",
-                "too long",
-                "vectors short enough for a table, as after fewer steps",
-            )
-        };
-        let moves = state.moves.iter();
-        let vectors = moves
-            .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
+        let allowed = "vectors short enough for a table, as after fewer steps";
+        let too_long = || ForgeError::field("displacement", "too long", allowed);
+        let vectors = vectors(&state.moves)
+            .iter()
+            .map(|[x, y]| Some([from_grid_units(x * unit)?, from_grid_units(y * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
         let history = Provenance {
@@ -356,8 +351,10 @@ impl Job {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Mutex;
+
     use super::*;
-    use crate::forge;
+    use crate::{Checkpoint, Progress, Watch, forge, resume};
 
     #[test]
     fn what_is_hopeless_is_refused_by_the_forge() {
@@ -383,5 +380,25 @@ mod tests {
             };
             assert!(plain.prospect().hopeless().is_none());
         }
+    }
+
+    #[test]
+    fn a_state_without_whole_vectors_is_refused() {
+        struct Keep(Mutex<Option<Checkpoint>>);
+        impl Watch for Keep {
+            fn progress(&self, _: &Progress) {}
+
+            fn checkpoint(&self, checkpoint: &Checkpoint) {
+                *self.0.lock().expect("alone") = Some(checkpoint.clone());
+            }
+        }
+        let mut job = Job::new("sqrt(3)".parse().expect("valid"));
+        (job.radius, job.steps) = (9, Some(2));
+        let keep = Keep(Mutex::default());
+        forge(&job, &keep).expect("valid");
+        let mut kept = keep.0.into_inner().expect("alone").expect("one");
+        kept.state.moves.pop();
+        let error = resume(&job, kept, &()).expect_err("refused").to_string();
+        assert!(error.contains("of another state"), "{error}");
     }
 }

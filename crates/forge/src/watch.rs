@@ -4,7 +4,7 @@
 //! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
 //! which reports [`Progress`] to it. None of them reads a clock, which WebAssembly lacks.
 
-use crate::{Checkpoint, ForgeError, checkpoint::Resumable};
+use crate::{Checkpoint, ForgeError, State};
 
 /// A stage of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl<'a> Meter<'a> {
 }
 
 /// A phase of a job.
-pub trait Phase<S> {
+pub trait Phase {
     /// The number of steps.
     fn steps(&self) -> u32;
 
@@ -119,18 +119,18 @@ pub trait Phase<S> {
     fn describe(&self) -> String;
 
     /// Prepares to go on from a state: the first one of the phase, or that of a checkpoint.
-    fn begin(&mut self, state: &mut S);
+    fn begin(&mut self, state: &mut State);
 
     /// Takes a step. Returns the energy before it, per point, or another value that progress shows.
-    fn step(&mut self, state: &mut S) -> f64;
+    fn step(&mut self, state: &mut State) -> f64;
 
     /// Completes a state for a checkpoint.
-    fn complete(&self, state: &mut S) {
+    fn complete(&self, state: &mut State) {
         let _ = state;
     }
 
     /// The first state of the next phase.
-    fn end(&self, state: S) -> Result<S, ForgeError>;
+    fn end(&self, state: State) -> Result<State, ForgeError>;
 
     /// The largest number of pairs that a step has visited; 0 if its energy is no pair energy.
     fn pairs(&self) -> usize {
@@ -140,14 +140,14 @@ pub trait Phase<S> {
 
 /// Takes the steps of a phase that are left, or fewer if the watch stops the work. Calls `keep` with the state between two
 /// steps when the watch wants a checkpoint and when it stops the work. Returns whether all steps are done.
-pub(crate) fn work_off<S: Resumable>(
-    phase: &mut (impl Phase<S> + ?Sized),
-    state: &mut S,
+pub(crate) fn work_off(
+    phase: &mut (impl Phase + ?Sized),
+    state: &mut State,
     meter: &mut Meter<'_>,
-    keep: &mut dyn FnMut(&S),
+    keep: &mut dyn FnMut(&State),
 ) -> bool {
     phase.begin(state);
-    while state.steps() < phase.steps() {
+    while state.steps < phase.steps() {
         let stop = meter.stop();
         if stop || meter.wants_checkpoint() {
             phase.complete(state);

@@ -59,8 +59,21 @@ fn thresholds_are_ranks_in_8_or_16_bits() {
     assert!(mask.to_png(16).expect("16 bits").starts_with(b"\x89PNG"));
     assert!(mask.to_png(4).is_err());
     assert!(masks[0].spectrum(0.25).low_power < 0.2);
-    let stopped = Mask::new_while(&table(), 64, 7, || false);
-    assert_eq!(stopped, Ok(None));
+    // It is stopped wherever it is.
+    let mut steps = 0;
+    let whole = Mask::new_while(&table(), 64, 7, |pixels| {
+        steps += pixels;
+        true
+    });
+    assert!(whole.is_ok_and(|mask| mask.is_some()));
+    for part in 0..64 {
+        let mut left = steps * part / 64;
+        let stopped = Mask::new_while(&table(), 64, 7, |pixels| {
+            left = left.saturating_sub(pixels);
+            left > 0
+        });
+        assert_eq!(stopped, Ok(None), "{part}");
+    }
 }
 
 /// Plain void and cluster has 0.12 to 0.16 on average. A kernel that reaches no other pixel had 2.4 at 1/256, and a

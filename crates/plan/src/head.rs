@@ -24,6 +24,7 @@ pub struct QueryEcho {
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     crs: Option<Crs>,
 }
 
@@ -50,20 +51,17 @@ pub struct TableEcho {
 impl Planned {
     /// The answer, in blocks of about `block_bytes`, less where points are costly.
     pub fn answer(&self, output: &Output, block_bytes: usize) -> Result<Answer, Error> {
-        let head = |count| self.head(output, count);
+        let bytes = effort::block_bytes(self, block_bytes);
         Answer::new(
             self.parts()?,
-            head,
+            |count| self.head(output, count),
             output,
-            effort::block_bytes(self, block_bytes),
+            bytes,
         )
     }
 
     fn head(&self, output: &Output, count: u128) -> Head {
-        let mut echoes = self
-            .sets
-            .iter()
-            .map(|set| Json::of(&TableEcho::new(&set.entry)));
+        let mut echoes = (self.sets.iter()).map(|set| Json::of(&TableEcho::new(&set.entry)));
         let tables = match echoes.next() {
             Some(only) if !self.query.is_layered => Tables::Table(only),
             first => Tables::Tables(first.into_iter().chain(echoes).collect()),
@@ -73,7 +71,7 @@ impl Planned {
             format: output.encoding.name(),
             decimals: output.decimals,
             relative_to: output.relative_to,
-            size: output.encoding.is_picture().then_some(output.size),
+            size: output.encoding.traits().is_picture.then_some(output.size),
             crs: output.crs.clone(),
         };
         Head {

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use strew_core::{
-    ErrorKind, Member, Neighbor, Point, PointId, PointSet,
+    ErrorKind, Neighbor, Point, PointId,
     server::{Stop, Visits},
-    space::{self, SpaceSet},
+    space,
 };
 use strew_encode::{Attributes as _, Column, Height, Kind, Located, Place, Values};
 use strew_error::{Error, Fault, number};
@@ -49,16 +49,15 @@ struct Spots {
 }
 
 impl Spots {
-    fn push(&mut self, member: &Member, distance: Option<f64>) {
-        self.points.push(member.point());
+    fn push(&mut self, point: Point, distance: Option<f64>) {
+        self.points.push(point);
         self.distances.push(distance);
     }
 
-    fn push_in_space(&mut self, point: &space::Point, distance: Option<f64>) {
-        let (flat, height) = Located::parted(point);
-        self.points.push(flat);
+    fn push_in_space(&mut self, point: space::Point, distance: Option<f64>) {
+        let (flat, height) = Located::parted(&point);
+        self.push(flat, distance);
         self.heights.push(height);
-        self.distances.push(distance);
     }
 
     /// The largest absolute coordinate.
@@ -78,15 +77,14 @@ impl Placed {
         let found = match &self.points {
             PlacedPoints::Space(points) => {
                 let read: space::PointId = id.parse().map_err(|_| wrong(ID_IN_SPACE))?;
-                points
-                    .point(read)
-                    .map(|point| spots.push_in_space(&point, None))
+                let found = points.point(read);
+                found.map(|member| spots.push_in_space(member.point(), None))
             }
             flat => {
                 let read: PointId = id.parse().map_err(|_| wrong(ID))?;
                 flat.point(read).map(|member| {
                     block = flat.block(member.id());
-                    spots.push(&member, None);
+                    spots.push(member.point(), None);
                 })
             }
         };
@@ -106,15 +104,25 @@ impl Placed {
     /// [`nearest`](Self::nearest) that visits a bounded number of points.
     pub fn nearest_visiting(&self, nearest: Nearest, visits: &Visits) -> Result<Vec<Found>, Error> {
         let mut spots = Spots::default();
+        let Nearest { k, radius, .. } = nearest;
+        let refused = |error| fault(nearest, &error);
         match (&self.points, nearest.at) {
             (PlacedPoints::Plane(points), Place::Plane(at)) => {
-                for Neighbor { member, distance } in in_plane(points, at, nearest, visits)? {
-                    spots.push(&member, Some(distance));
+                let found = match (k, radius) {
+                    (None, Some(radius)) => points.around_visiting(at, radius, MOST_WITHIN, visits),
+                    _ => points.nearest_visiting(at, k.unwrap_or(1), radius, visits),
+                };
+                for Neighbor { member, distance } in found.map_err(refused)? {
+                    spots.push(member.point(), Some(distance));
                 }
             }
             (PlacedPoints::Space(points), Place::Space(at)) => {
-                for space::Neighbor { point, distance } in in_space(points, at, nearest, visits)? {
-                    spots.push_in_space(&point, Some(distance));
+                let found = match (k, radius) {
+                    (None, Some(radius)) => points.around_visiting(at, radius, MOST_WITHIN, visits),
+                    _ => points.nearest_visiting(at, k.unwrap_or(1), radius, visits),
+                };
+                for Neighbor { member, distance } in found.map_err(refused)? {
+                    spots.push_in_space(member.point(), Some(distance));
                 }
             }
             _ => return Err(Error::Internal("neighbors of a period were not refused")),
@@ -170,41 +178,6 @@ fn value(column: &Column, values: &Values, row: usize) -> Value {
                 .and_then(|index| names.get(index as usize));
             name.map(String::as_str).into()
         }
-    }
-}
-
-fn in_plane(
-    points: &PointSet,
-    at: [f64; 2],
-    nearest: Nearest,
-    visits: &Visits,
-) -> Result<Vec<Neighbor>, Error> {
-    let found = match (nearest.k, nearest.radius) {
-        (None, Some(radius)) => points.around_visiting(at, radius, MOST_WITHIN, visits),
-        (k, radius) => points.nearest_visiting(at, k.unwrap_or(1), radius, visits),
-    };
-    found.map_err(|error| fault(nearest, &error))
-}
-
-fn in_space(
-    points: &SpaceSet,
-    at: [f64; 3],
-    nearest: Nearest,
-    visits: &Visits,
-) -> Result<Vec<space::Neighbor>, Error> {
-    let (k, radius) = match (nearest.k, nearest.radius) {
-        (None, Some(radius)) => (MOST_WITHIN, Some(radius)),
-        (k, radius) => (k.unwrap_or(1), radius),
-    };
-    let found = points.nearest_visiting(at, k, radius, visits);
-    let found = found.map_err(|error| fault(nearest, &error))?;
-    match (nearest.k, radius) {
-        (None, Some(radius)) if found.len() == MOST_WITHIN => {
-            let allowed = format!("a radius with fewer than {MOST_WITHIN} points within");
-            let detail = "too many points lie within";
-            Err(Fault::new("radius", number(radius), detail, allowed).into())
-        }
-        _ => Ok(found),
     }
 }
 

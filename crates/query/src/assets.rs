@@ -47,19 +47,19 @@ impl Assets {
     /// The assets after reading the folders of tables, fields, lists and worlds again, and the changes.
     pub fn reload(&self, config: &Config) -> (Self, Reload) {
         let (after, mut reload) = self.catalog.reload_tables(config.tables.folder());
-        let names = match config.read_names() {
-            Ok(names) => names,
+        let (names, changed) = match config.read_again() {
+            Ok(read) => read,
             Err(error) => {
-                let file = config.files.last().map(|file| file.display().to_string());
-                reload.refuse_file(&file.unwrap_or_default(), &error);
+                let file = config.layers.files.last();
+                reload.refuse_file(file.map(AsRef::as_ref), &error);
                 // The earlier fields and worlds stay, including those of folders.
                 return (self.over(after), reload);
             }
         };
+        reload.at_next_start = changed;
         let after = after.reload_names(&names, &mut reload);
-        let (worlds, changes, refused) = self.worlds.reload(&names.worlds, &after);
-        reload.worlds = changes;
-        reload.refuse(refused);
+        let worlds = self.worlds.reload(&names.worlds, &after);
+        let worlds = reload.take(|all| &mut all.worlds, worlds);
         (Self::from(after).with_worlds(worlds), reload)
     }
 }

@@ -74,7 +74,7 @@ pub use period::{Period, PeriodEcho, Periods};
 pub use query::{Named, Query, Window};
 pub use region::{RegionDraft, Rings, ShapeDraft};
 pub use region_check::{QueryRegion, QueryVolume};
-pub use schema::{NAME, TITLE, schema};
+pub use schema::{NAME, TITLE, integer, schema};
 pub use set::Set;
 pub use shape::Shape;
 pub use space::{BALL, BOX, SPACE_AT, SPACE_ATTRIBUTES, SPACE_PARAMETERS};

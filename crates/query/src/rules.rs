@@ -108,10 +108,10 @@ pub static RULES: &[Rule] = &[
     rule(&SPREAD, Condition::Needs(Spread::Even.name(), &VARIANTS)),
     rule(&SPREAD, Condition::Needs(Spread::Joint.name(), &VARIANTS)),
     rule(&ATTRIBUTES, Condition::Needs("variant", &VARIANTS)),
-    rule(&DECIMALS, Condition::Format(Encoding::is_text)),
-    rule(&SIZE, Condition::Format(Encoding::is_picture)),
-    rule(&SUMMARY, Condition::Format(Encoding::has_summary)),
-    rule(&CRS, Condition::Format(Encoding::has_crs)),
+    rule(&DECIMALS, Condition::Format(|of| of.traits().is_text)),
+    rule(&SIZE, Condition::Format(|of| of.traits().is_picture)),
+    rule(&SUMMARY, Condition::Format(|of| of.traits().has_summary)),
+    rule(&CRS, Condition::Format(|of| of.traits().has_crs)),
 ];
 
 /// The rules about a parameter.

@@ -104,9 +104,7 @@ impl Shape {
             Self::Weights => "name:weight pairs, joined by commas".into(),
             Self::Ranges => "name:min:max triples, joined by commas".into(),
             Self::Choice(words) => words.join(", "),
-            Self::Format => {
-                Encoding::names_where(|format| format.is_streamed() && format.is_written())
-            }
+            Self::Format => Encoding::names(),
             Self::Quadratic => {
                 "a decimal, a fraction or a quadratic irrational, such as (5-sqrt(3))/2".into()
             }

@@ -116,6 +116,14 @@ mod tests {
                 shape!("single_pixels.tif"),
                 "it has 4096 strips or tiles; allowed: up to 144 for 64 × 64 pixels",
             ),
+            (
+                shape!("large_webp.tif"),
+                "the TIFF is damaged or truncated: a strip or tile has 16383 × 16383 pixels",
+            ),
+            (
+                shape!("large_jpeg.tif"),
+                "the TIFF is damaged or truncated: a strip or tile has 65535 × 65535 pixels",
+            ),
         ] {
             let stop = strew_core::server::Stop::NEVER;
             let read = Image::from_bytes(file, Meaning::Data, Limits::FILES, &stop);

@@ -44,3 +44,10 @@ pub enum RasterError {
         value: f64,
     },
 }
+
+impl RasterError {
+    pub(super) fn damaged(format: &'static str, detail: impl ToString) -> Self {
+        let detail = detail.to_string();
+        Self::Damaged { format, detail }
+    }
+}

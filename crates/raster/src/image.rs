@@ -97,13 +97,9 @@ impl Image {
         let [width, height] = self.size.map(|side| side as f64);
         let [x, y] = [[c, c + a * width], [f, f + e * height]];
         let is_box = b == 0.0 && d == 0.0 && x[0] != x[1] && y[0] != y[1];
+        let [[west, east], [south, north]] = [x, y].map(|[a, b]| [a.min(b), a.max(b)]);
         let place = match is_box && x.iter().chain(&y).all(|v| v.is_finite()) {
-            true => Place::Box([
-                x[0].min(x[1]),
-                y[0].min(y[1]),
-                x[0].max(x[1]),
-                y[0].max(y[1]),
-            ]),
+            true => Place::Box([west, south, east, north]),
             false if b != 0.0 || d != 0.0 => Place::Unusable("it is turned or sheared"),
             false => Place::Unusable("its place has no area"),
         };
@@ -169,17 +165,22 @@ fn turned<T: Copy>(
     Ok(made)
 }
 
+/// A number of up to 8 bytes.
+pub(super) fn number(bytes: &[u8], is_little: bool) -> u64 {
+    let next = |all: u64, byte: &u8| all << 8 | u64::from(*byte);
+    match is_little {
+        true => bytes.iter().rev().fold(0, next),
+        false => bytes.iter().fold(0, next),
+    }
+}
+
 /// The orientation that the data of Exif state, 1 if they state none.
 pub(super) fn orientation(exif: &[u8]) -> u16 {
     let exif = exif.strip_prefix(b"Exif\0\0").unwrap_or(exif);
     let is_little = exif.starts_with(b"II");
     let number = |at: usize, bytes: usize| {
-        let bytes = exif.get(at..at.checked_add(bytes)?)?.iter();
-        let next = |all: usize, byte: &u8| all << 8 | usize::from(*byte);
-        Some(match is_little {
-            true => bytes.rev().fold(0, next),
-            false => bytes.fold(0, next),
-        })
+        let bytes = exif.get(at..at.checked_add(bytes)?)?;
+        Some(number(bytes, is_little) as usize)
     };
     let find = || {
         let start = number(4, 4)?;

@@ -10,6 +10,11 @@
 
 #[cfg(feature = "tiff")]
 mod chunks;
+#[cfg(feature = "compressions")]
+mod embedded;
+#[cfg(all(feature = "tiff", not(feature = "compressions")))]
+#[path = "not_embedded.rs"]
+mod embedded;
 mod error;
 mod image;
 mod limits;
@@ -166,23 +171,19 @@ impl Format {
         let mut head = vec![];
         from.by_ref().take(12).read_to_end(&mut head)?;
         from.seek(SeekFrom::Start(0))?;
-        let begins = |magic: &[u8]| head.starts_with(magic);
-        Ok(if begins(PNG) {
-            Some(Self::Png)
-        } else if [b"II*\0", b"II+\0", b"MM\0*", b"MM\0+"]
-            .iter()
-            .any(|magic| begins(*magic))
-        {
-            Some(Self::Tiff)
-        } else if begins(b"\x93NUMPY") {
-            Some(Self::Npy)
-        } else if begins(b"\xff\xd8\xff") {
-            Some(Self::Jpeg)
-        } else if begins(b"RIFF") && head.get(8..12) == Some(b"WEBP") {
-            Some(Self::WebP)
-        } else {
-            None
-        })
+        let is_webp = head.starts_with(b"RIFF") && head.get(8..) == Some(b"WEBP");
+        let known: [(&[u8], Self); 7] = [
+            (PNG, Self::Png),
+            (b"II*\0", Self::Tiff),
+            (b"II+\0", Self::Tiff),
+            (b"MM\0*", Self::Tiff),
+            (b"MM\0+", Self::Tiff),
+            (b"\x93NUMPY", Self::Npy),
+            (b"\xff\xd8\xff", Self::Jpeg),
+        ];
+        let mut known = known.into_iter();
+        let found = known.find_map(|(magic, format)| head.starts_with(magic).then_some(format));
+        Ok(found.or(is_webp.then_some(Self::WebP)))
     }
 }
 

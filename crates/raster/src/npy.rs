@@ -4,36 +4,11 @@ use std::io::{Read, Seek, SeekFrom};
 
 use strew_core::server::Stop;
 
-use super::{
-    error::RasterError,
-    image::Image,
-    limits::Limits,
-    samples::Samples,
-    wanted::{FEW, look},
-};
+use super::{error::RasterError, image::Image, limits::Limits, samples::Samples};
 
-const ALLOWED: &str = "two dimensions in C order, of the types u1, u2, f4 or f8, little endian";
+const ALLOWED: &str = "two dimensions of the types b1, u1, u2, f4 or f8";
 /// The longest header: far longer than any of an array of two dimensions.
 const LONGEST_HEADER: usize = 1 << 16;
-
-#[derive(Clone, Copy)]
-enum Kind {
-    U8,
-    U16,
-    F32,
-    F64,
-}
-
-impl Kind {
-    const fn bytes(self) -> usize {
-        match self {
-            Self::U8 => 1,
-            Self::U16 => 2,
-            Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-}
 
 pub(super) fn read(
     mut from: impl Read + Seek,
@@ -62,16 +37,10 @@ pub(super) fn read(
     let mut header = vec![0; length];
     fill(&mut from, &mut header)?;
     let header = String::from_utf8_lossy(&header);
-    let kind = match value(&header, "descr")?.trim_matches(['\'', '"']) {
-        "|u1" | "<u1" | "u1" | "|b1" => Kind::U8,
-        "<u2" => Kind::U16,
-        "<f4" => Kind::F32,
-        "<f8" => Kind::F64,
-        other => return Err(unsupported(format!("an array of type {other:.40}"))),
-    };
-    if value(&header, "fortran_order")? != "False" {
-        return Err(unsupported("an array in Fortran order".into()));
-    }
+    let kind = value(&header, "descr")?.trim_matches(['\'', '"']);
+    let order = value(&header, "fortran_order")?.to_lowercase();
+    let wrong = |_| damaged(format!("its fortran_order is {order:.40}"));
+    let is_by_columns = order.parse::<bool>().map_err(wrong)?;
     let shape = value(&header, "shape")?;
     let sides = shape
         .split(',')
@@ -85,20 +54,12 @@ pub(super) fn read(
             sides.len()
         )));
     };
-    let size = limits.check(width, height)?;
-    let mut image = numbers(from, size, kind, stop)?;
-    // Truth is stored as 0 and 1.
-    image.is_sharp = value(&header, "descr")?.contains("b1");
-    if let Samples::U8(values) = &mut image.samples
-        && image.is_sharp
-    {
-        for part in values.chunks_mut(FEW) {
-            look(stop)?;
-            part.iter_mut()
-                .for_each(|value| *value = u8::from(*value > 0) * u8::MAX);
-        }
+    let [width, height] = limits.check(width, height)?;
+    if is_by_columns {
+        // Exif's orientation 5 exchanges rows and columns.
+        return numbers(from, [height, width], kind, stop)?.upright(5, stop);
     }
-    Ok(image)
+    numbers(from, [width, height], kind, stop)
 }
 
 pub(super) fn read_floats(
@@ -107,45 +68,61 @@ pub(super) fn read_floats(
     stop: &Stop,
 ) -> Result<Image, RasterError> {
     from.seek(SeekFrom::Start(0))?;
-    numbers(from, size, Kind::F32, stop)
+    numbers(from, size, "<f4", stop)
 }
 
 /// The numbers from here to the end; their number must match the size.
 fn numbers(
     mut from: impl Read + Seek,
     size: [usize; 2],
-    kind: Kind,
+    kind: &str,
     stop: &Stop,
 ) -> Result<Image, RasterError> {
     let here = from.stream_position()?;
     let there = from.seek(SeekFrom::End(0))?;
     from.seek(SeekFrom::Start(here))?;
     let count = size[0] * size[1];
-    let (bytes, expected) = (there.saturating_sub(here), count * kind.bytes());
+    let (is_big, of) = (
+        kind.starts_with('>'),
+        kind.trim_start_matches(['<', '>', '|']),
+    );
+    let each_bytes = match of {
+        "b1" | "u1" => 1,
+        "u2" => 2,
+        "f4" => 4,
+        "f8" => 8,
+        _ => return Err(unsupported(format!("an array of type {kind:.40}"))),
+    };
+    let (bytes, expected) = (there.saturating_sub(here), count * each_bytes);
     if bytes != expected as u64 {
         let [width, height] = size;
         let detail = format!("{width} × {height} pixels take {expected} bytes, there are {bytes}");
         return Err(damaged(detail));
     }
-    let samples = match kind {
-        Kind::U8 => {
-            let mut values = vec![0; count];
-            fill(&mut from, &mut values)?;
-            Samples::U8(values)
-        }
-        Kind::U16 => Samples::U16(each(from, count, u16::from_le_bytes)?),
-        Kind::F32 => Samples::F32(each(from, count, f32::from_le_bytes)?),
-        Kind::F64 => {
+    let samples = match of {
+        // Truth is stored as 0 and 1.
+        "b1" => Samples::U8(each(from, count, is_big, |[is]| {
+            u8::from(is > 0) * u8::MAX
+        })?),
+        "u1" => Samples::U8(each(from, count, is_big, u8::from_le_bytes)?),
+        "u2" => Samples::U16(each(from, count, is_big, u16::from_le_bytes)?),
+        "f4" => Samples::F32(each(from, count, is_big, f32::from_le_bytes)?),
+        _ => {
             let narrow = |bytes| f64::from_le_bytes(bytes) as f32;
-            Samples::F32(each(from, count, narrow)?)
+            Samples::F32(each(from, count, is_big, narrow)?)
         }
     };
-    Image::new(size, samples).without_nan(stop)
+    let image = Image::new(size, samples).without_nan(stop)?;
+    Ok(Image {
+        is_sharp: of == "b1",
+        ..image
+    })
 }
 
 fn each<const N: usize, T>(
     mut from: impl Read,
     count: usize,
+    is_big: bool,
     read: impl Fn([u8; N]) -> T,
 ) -> Result<Vec<T>, RasterError> {
     const MOST: usize = 1 << 16;
@@ -154,7 +131,10 @@ fn each<const N: usize, T>(
     while values.len() < count {
         let part = &mut bytes[..(count - values.len()).min(MOST) * N];
         fill(&mut from, part)?;
-        let (whole, _) = part.as_chunks::<N>();
+        let (whole, _) = part.as_chunks_mut::<N>();
+        if is_big {
+            whole.iter_mut().for_each(|bytes| bytes.reverse());
+        }
         values.extend(whole.iter().map(|bytes| read(*bytes)));
     }
     Ok(values)
@@ -182,10 +162,7 @@ fn value<'a>(header: &'a str, key: &str) -> Result<&'a str, RasterError> {
 }
 
 fn damaged(detail: String) -> RasterError {
-    RasterError::Damaged {
-        format: "array",
-        detail,
-    }
+    RasterError::damaged("array", detail)
 }
 
 fn unsupported(found: String) -> RasterError {

@@ -20,30 +20,43 @@ use super::{
 /// A WebP decoder may take this much besides the picture.
 const WORKING_BYTES: usize = 1 << 30;
 
-pub(super) fn jpeg(mut from: impl BufRead + Seek, limits: Limits) -> Result<Image, RasterError> {
-    let damaged = |error: zune_jpeg::errors::DecodeErrors| RasterError::Damaged {
-        format: "JPEG",
-        detail: error.to_string(),
-    };
+/// The size of a picture, its pixels and its orientation.
+type Pixels = ([usize; 2], Vec<u8>, u16);
+
+pub(super) fn jpeg(from: impl BufRead + Seek, limits: Limits) -> Result<Image, RasterError> {
+    let check = |[width, height]: [usize; 2], _| limits.check(width as u64, height as u64);
+    picture("JPEG", jpeg_pixels(from, true, check)?, false)
+}
+
+/// The pixels as RGB, or as they are stored, if `check` admits the size and the number of channels.
+pub(super) fn jpeg_pixels<T>(
+    mut from: impl BufRead + Seek,
+    is_rgb: bool,
+    check: impl FnOnce([usize; 2], usize) -> Result<T, RasterError>,
+) -> Result<Pixels, RasterError> {
+    let damaged = |error| RasterError::damaged("JPEG", error);
     // The decoder takes gray for what is cut off.
     if !is_whole(&mut from)? {
-        return Err(RasterError::Damaged {
-            format: "JPEG",
-            detail: "it ends before its last pixel".into(),
-        });
+        let detail = "it ends before its last pixel";
+        return Err(RasterError::damaged("JPEG", detail));
     }
     from.seek(SeekFrom::Start(0))?;
-    let options = DecoderOptions::default()
+    let mut options = DecoderOptions::default()
         .set_max_width(usize::from(u16::MAX))
         .set_max_height(usize::from(u16::MAX))
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = JpegDecoder::new_with_options(from, options);
     decoder.decode_headers().map_err(damaged)?;
-    let (width, height) = decoder.dimensions().unwrap_or_default();
-    let size = limits.check(width as u64, height as u64)?;
+    let size = decoder.dimensions().unwrap_or_default().into();
+    let stored = decoder.input_colorspace().unwrap_or(ColorSpace::RGB);
+    check(size, stored.num_components())?;
+    if !is_rgb {
+        options = options.jpeg_set_out_colorspace(stored);
+        decoder.set_options(options);
+    }
     let pixels = decoder.decode().map_err(damaged)?;
     let exif = decoder.exif().map_or(1, |exif| orientation(exif));
-    picture("JPEG", size, &pixels, false, exif)
+    Ok((size, pixels, exif))
 }
 
 /// Whether the end of the picture is there: a marker that is no part of a segment.
@@ -75,47 +88,53 @@ fn is_whole(from: &mut impl BufRead) -> io::Result<bool> {
 }
 
 pub(super) fn webp(from: impl BufRead + Seek, limits: Limits) -> Result<Image, RasterError> {
+    let mut has_alpha = false;
+    let check = |[width, height]: [usize; 2], channels| {
+        has_alpha = channels == 4;
+        limits.check(width as u64, height as u64)
+    };
+    let pixels = webp_pixels(from, check)?;
+    picture("WebP", pixels, has_alpha)
+}
+
+/// The pixels, if `check` admits the size and the number of channels.
+pub(super) fn webp_pixels<T>(
+    from: impl BufRead + Seek,
+    check: impl FnOnce([usize; 2], usize) -> Result<T, RasterError>,
+) -> Result<Pixels, RasterError> {
     let damaged = |error: DecodingError| match error {
         DecodingError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             error.into()
         }
-        error => RasterError::Damaged {
-            format: "WebP",
-            detail: error.to_string(),
-        },
+        error => RasterError::damaged("WebP", error),
     };
     let mut decoder = WebPDecoder::new(from).map_err(damaged)?;
     decoder.set_memory_limit(WORKING_BYTES);
     let (width, height) = decoder.dimensions();
-    let size = limits.check(width.into(), height.into())?;
-    let has_alpha = decoder.has_alpha();
-    let bytes = size[0] * size[1] * if has_alpha { 4 } else { 3 };
-    let mut pixels = vec![0; decoder.output_buffer_size().unwrap_or(bytes)];
+    let size = [width, height].map(|side| side as usize);
+    let channels = if decoder.has_alpha() { 4 } else { 3 };
+    check(size, channels)?;
+    let mut pixels = vec![0; size[0] * size[1] * channels];
     decoder.read_image(&mut pixels).map_err(damaged)?;
     let exif = decoder.exif_metadata().ok().flatten();
-    let exif = exif.map_or(1, |exif| orientation(&exif));
-    picture("WebP", size, &pixels, has_alpha, exif)
+    Ok((size, pixels, exif.map_or(1, |exif| orientation(&exif))))
 }
 
 /// A picture from the bytes of its pixels.
 fn picture(
     format: &'static str,
-    size: [usize; 2],
-    pixels: &[u8],
+    (size, pixels, orientation): Pixels,
     has_alpha: bool,
-    orientation: u16,
 ) -> Result<Image, RasterError> {
     let channels = Channels {
         has_colors: true,
         has_alpha,
     };
     let mut light = Vec::with_capacity(size[0] * size[1]);
-    tone::light(pixels, channels, Meaning::Picture, &mut light);
+    tone::light(&pixels, channels, Meaning::Picture, &mut light);
     if light.len() != size[0] * size[1] {
-        return Err(RasterError::Damaged {
-            format,
-            detail: "it does not have the pixels that its header says".into(),
-        });
+        let detail = "it does not have the pixels that its header says";
+        return Err(RasterError::damaged(format, detail));
     }
     let image = Image {
         is_picture: true,

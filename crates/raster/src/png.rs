@@ -9,7 +9,7 @@ use super::{
     error::RasterError,
     image::{Image, orientation},
     limits::Limits,
-    samples::Samples,
+    samples::{Samples, each},
     tone::{self, Channels, Meaning},
     wanted::look,
 };
@@ -39,27 +39,20 @@ pub(super) fn read(
     let is_gray = info.color_type == ColorType::Grayscale;
     let is_sharp = is_gray && info.bit_depth == BitDepth::One;
     let has_numbers = is_gray || info.color_type == ColorType::Indexed;
-    let bits = match has_numbers && meaning == Meaning::Numbers {
-        true => info.bit_depth as u8,
-        false => 8,
-    };
     let is_expanded = !has_numbers || meaning != Meaning::Numbers;
-    decoder.set_transformations(match is_expanded {
-        true => Transformations::EXPAND,
-        false => Transformations::IDENTITY,
-    });
+    let (bits, transformed) = match is_expanded {
+        true => (8, Transformations::EXPAND),
+        false => (info.bit_depth as u8, Transformations::IDENTITY),
+    };
+    decoder.set_transformations(transformed);
     let mut reader = decoder.read_info().map_err(damaged)?;
-    let orientation = reader
-        .info()
-        .exif_metadata
-        .as_deref()
-        .map_or(1, orientation);
+    let exif = reader.info().exif_metadata.as_deref();
+    let orientation = exif.map_or(1, orientation);
     // The numbers that are transparent, of those that are not expanded.
     let clear: Vec<u16> = match reader.info().trns.as_deref() {
         Some(alpha) if !is_expanded && !is_gray => {
-            let all = (0..).zip(alpha);
-            all.filter_map(|(index, alpha)| (*alpha == 0).then_some(index))
-                .collect()
+            let all = (0..).zip(alpha).filter(|(_, alpha)| **alpha == 0);
+            all.map(|(index, _)| index).collect()
         }
         Some(&[high, low]) if !is_expanded => vec![u16::from_be_bytes([high, low])],
         _ => vec![],
@@ -105,24 +98,18 @@ pub(super) fn read(
         for _ in 0..size[1] {
             look(stop)?;
             let row = reader.next_row().map_err(damaged)?;
-            let row = row.ok_or_else(|| damaged("it ends before its last row"))?;
+            let row =
+                row.ok_or_else(|| RasterError::damaged("PNG", "it ends before its last row"))?;
             rows.add(row.data());
         }
     }
     let (mut samples, missing) = (rows.samples, rows.missing);
-    match &mut samples {
-        Samples::U8(values) => values.shrink_to_fit(),
-        Samples::U16(values) => values.shrink_to_fit(),
-        Samples::F32(_) => {}
-    }
+    each!(&mut samples, values => values.shrink_to_fit());
     if samples.len() != size[0] * size[1] {
-        return Err(damaged("its rows are not as long as its header says"));
+        let detail = "its rows are not as long as its header says";
+        return Err(RasterError::damaged("PNG", detail));
     }
-    let is_clear = |i: usize| {
-        clear
-            .iter()
-            .any(|clear| samples.get(i) == f64::from(*clear))
-    };
+    let is_clear = |i| clear.iter().any(|of| samples.get(i) == f64::from(*of));
     let missing = match clear.is_empty() {
         true => missing,
         false => (0..samples.len()).map(is_clear).collect(),
@@ -183,41 +170,15 @@ impl Rows {
     }
 }
 
-fn damaged(error: impl Into<PngProblem>) -> RasterError {
-    let detail = match error.into() {
-        PngProblem::Decoding(DecodingError::LimitsExceeded) => {
-            return RasterError::Unsupported {
-                found: "a PNG whose chunks take too much memory".into(),
-                allowed: "up to 8 MiB besides the pixels",
-            };
+fn damaged(error: DecodingError) -> RasterError {
+    match error {
+        DecodingError::LimitsExceeded => RasterError::Unsupported {
+            found: "a PNG whose chunks take too much memory".into(),
+            allowed: "up to 8 MiB besides the pixels",
+        },
+        DecodingError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
+            error.into()
         }
-        PngProblem::Decoding(DecodingError::IoError(error))
-            if error.kind() != std::io::ErrorKind::UnexpectedEof =>
-        {
-            return error.into();
-        }
-        PngProblem::Decoding(error) => error.to_string(),
-        PngProblem::Other(detail) => detail.into(),
-    };
-    RasterError::Damaged {
-        format: "PNG",
-        detail,
-    }
-}
-
-enum PngProblem {
-    Decoding(DecodingError),
-    Other(&'static str),
-}
-
-impl From<DecodingError> for PngProblem {
-    fn from(error: DecodingError) -> Self {
-        Self::Decoding(error)
-    }
-}
-
-impl From<&'static str> for PngProblem {
-    fn from(detail: &'static str) -> Self {
-        Self::Other(detail)
+        error => RasterError::damaged("PNG", error),
     }
 }

@@ -23,23 +23,15 @@ impl Price {
 
     /// Of a PNG that begins with these bytes.
     pub fn of_png(head: &[u8]) -> Self {
-        let number = |at: usize| -> Option<u64> {
-            let bytes = head.get(at..at + 4)?;
-            Some(u32::from_be_bytes(bytes.try_into().ok()?).into())
-        };
-        if !head.starts_with(PNG) {
-            return Self::default();
-        }
-        let (Some(width), Some(height), Some(&[depth, color, _, _, interlaced])) = (
-            number(16),
-            number(20),
-            head.get(24..29).and_then(|rest| rest.first_chunk()),
-        ) else {
-            return Self::default();
-        };
-        let Some(pixels) = pixels(width, height) else {
-            return Self::default();
-        };
+        Self::read_png(head).unwrap_or_default()
+    }
+
+    fn read_png(head: &[u8]) -> Option<Self> {
+        let number = |at| Some(u32::from_be_bytes(*head.get(at..)?.first_chunk()?).into());
+        let head = head.strip_prefix(PNG).and(Some(head))?;
+        let (width, height) = (number(16)?, number(20)?);
+        let [depth, color, _, _, interlaced] = *head.get(24..)?.first_chunk()?;
+        let pixels = pixels(width, height)?;
         let channels = match color {
             2 => 3,
             // The palette may have alpha.
@@ -49,23 +41,17 @@ impl Price {
         };
         let deep = if depth == 16 { 2 } else { 1 };
         // Without interlacing only rows are held as they are stored.
-        let rows = if interlaced == 0 {
-            2 * width as usize
-        } else {
-            pixels
+        let rows = [2 * width as usize, pixels][usize::from(interlaced != 0)];
+        let (words, tones) = match depth == 16 || !matches!(color, 0 | 4) {
+            true => (2, TONES),
+            false => (1, 0),
         };
-        let words = if depth == 16 || !matches!(color, 0 | 4) {
-            2
-        } else {
-            1
-        };
-        let tones = if words == 2 { TONES } else { 0 };
         // Which pixels are missing, here and in a field, and the pixels before they are turned upright.
         let further = 2 + words;
-        Self {
+        Some(Self {
             pixels,
             bytes: rows * channels * deep + pixels * (words + further) + tones,
-        }
+        })
     }
 
     pub fn of_floats([width, height]: [usize; 2]) -> Self {

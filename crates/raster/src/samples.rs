@@ -9,6 +9,18 @@ pub enum Samples {
     F32(Vec<f32>),
 }
 
+/// Does the same with the numbers of each type.
+macro_rules! each {
+    ($samples:expr, $values:ident => $result:expr) => {
+        match $samples {
+            Samples::U8($values) => $result,
+            Samples::U16($values) => $result,
+            Samples::F32($values) => $result,
+        }
+    };
+}
+pub(super) use each;
+
 impl Samples {
     /// The greatest number of an integer type, else 1.
     pub const fn full(&self) -> f64 {
@@ -29,11 +41,7 @@ impl Samples {
     }
 
     pub const fn len(&self) -> usize {
-        match self {
-            Self::U8(values) => values.len(),
-            Self::U16(values) => values.len(),
-            Self::F32(values) => values.len(),
-        }
+        each!(self, values => values.len())
     }
 
     /// Whether there are none.
@@ -46,11 +54,7 @@ impl Samples {
     /// # Panics
     /// If there is no such pixel.
     pub fn get(&self, i: usize) -> f64 {
-        match self {
-            Self::U8(values) => values[i].into(),
-            Self::U16(values) => values[i].into(),
-            Self::F32(values) => values[i].into(),
-        }
+        each!(self, values => values[i].into())
     }
     /// Makes some numbers 0.
     pub(super) fn clear(&mut self, which: &[bool]) {
@@ -59,10 +63,6 @@ impl Samples {
                 *value = T::default();
             }
         }
-        match self {
-            Self::U8(values) => clear(values, which),
-            Self::U16(values) => clear(values, which),
-            Self::F32(values) => clear(values, which),
-        }
+        each!(self, values => clear(values, which));
     }
 }

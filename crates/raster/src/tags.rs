@@ -3,7 +3,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-use super::{error::RasterError, tiff_faults::broken};
+use super::{error::RasterError, image::number, tiff_faults::broken};
 
 /// The most directories that are looked at: smaller copies of the picture, and masks.
 const MOST: usize = 64;
@@ -61,13 +61,7 @@ impl<R: Read + Seek> Tagged<R> {
         from.seek(SeekFrom::Start(0))?;
         from.read_exact(&mut head[..8])?;
         let is_little = head[0] == b'I';
-        let number = |bytes: &[u8]| {
-            let next = |all: u64, byte: &u8| all << 8 | u64::from(*byte);
-            match is_little {
-                true => bytes.iter().rev().fold(0, next),
-                false => bytes.iter().fold(0, next),
-            }
-        };
+        let number = |bytes: &[u8]| number(bytes, is_little);
         let is_big = number(&head[2..4]) == 43;
         // The bytes of a place in the file, and of the number of entries.
         let (place, entries) = if is_big { (8, 8) } else { (4, 2) };

@@ -1,6 +1,6 @@
 //! Rasters of all formats, and the faults of bad ones.
 
-use std::io::Cursor;
+use std::io::{BufReader, Cursor};
 
 use ::png::{BitDepth::*, ColorType::*};
 
@@ -45,9 +45,18 @@ fn npy(descr: &str, order: &str, shape: &str, data: &[u8]) -> Vec<u8> {
     file
 }
 
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
 macro_rules! seed {
     ($name:literal) => {
-        include_bytes!(concat!("../../../fuzz/seeds/raster/", $name)).as_slice()
+        include_bytes!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../fuzz/seeds/raster/",
+            $name
+        ))
+        .as_slice()
     };
 }
 
@@ -59,42 +68,22 @@ fn gray() -> &'static [u8] {
 
 #[test]
 fn one_channel_of_a_png_is_taken_as_it_is() {
-    for (size, color, depth, data, samples) in [
-        (
-            [3, 1],
-            Grayscale,
-            Eight,
-            &[0, 7, 255][..],
-            Samples::U8(vec![0, 7, 255]),
-        ),
-        (
-            [1, 2],
-            Grayscale,
-            Sixteen,
-            &[1, 2, 255, 255],
-            Samples::U16(vec![258, 65535]),
-        ),
+    for (width, color, depth, data, numbers) in [
+        (3, Grayscale, Eight, &[0, 7, 255][..], vec![0, 7, 255]),
+        (2, Grayscale, Sixteen, &[1, 2, 0, 3], vec![258, 3]),
         // Four pixels of one bit each.
-        (
-            [4, 1],
-            Grayscale,
-            One,
-            &[0b1010_0000],
-            Samples::U8(vec![255, 0, 255, 0]),
-        ),
+        (4, Grayscale, One, &[0b1010_0000], vec![255, 0, 255, 0]),
         // Transparency multiplies.
-        (
-            [2, 1],
-            GrayscaleAlpha,
-            Eight,
-            &[200, 255, 200, 51],
-            Samples::U8(vec![200, 40]),
-        ),
+        (2, GrayscaleAlpha, Eight, &[99, 255, 99, 51], vec![99, 20]),
     ] {
-        let image = read(&png(size, color, depth, data)).expect("gray");
-        let size = size.map(|side| side as usize);
-        assert_eq!((image.size, image.place), (size, Place::Unknown));
-        assert_eq!((image.samples, image.missing), (samples, None));
+        let image = read(&png([width, 1], color, depth, data)).expect("gray");
+        assert_eq!(image.size, [width as usize, 1]);
+        assert_eq!((image.place, image.missing), (Place::Unknown, None));
+        let samples = match depth {
+            Sixteen => Samples::U16(numbers),
+            _ => Samples::U8(numbers.into_iter().map(|v| v as u8).collect()),
+        };
+        assert_eq!(image.samples, samples);
     }
     // What is wholly transparent is missing, but not from a picture's paper.
     let clear = png([2, 1], GrayscaleAlpha, Eight, &[200, 0, 7, 255]);
@@ -120,12 +109,6 @@ fn colors_become_linear_light() {
 
 #[test]
 fn arrays_have_their_types_and_shapes() {
-    let floats = |values: &[f32]| {
-        values
-            .iter()
-            .flat_map(|v| v.to_le_bytes())
-            .collect::<Vec<_>>()
-    };
     let array = |descr, shape, data: &[u8]| {
         let image = read(&npy(descr, "False", shape, data)).expect("an array");
         (image.size, image.samples)
@@ -134,6 +117,10 @@ fn arrays_have_their_types_and_shapes() {
     assert_eq!(array("<f4", "1, 2", &floats(&[0.5, -3.0])), expected);
     let expected = ([1, 2], Samples::U16(vec![1, 256]));
     assert_eq!(array("<u2", "2, 1", &[1, 0, 0, 1]), expected);
+    assert_eq!(array(">u2", "2, 1", &[0, 1, 1, 0]), expected);
+    let columns = read(&npy("|u1", "True", "2, 3", &[1, 2, 3, 4, 5, 6])).expect("by columns");
+    let expected = ([3, 2], Samples::U8(vec![1, 3, 5, 2, 4, 6]));
+    assert_eq!((columns.size, columns.samples), expected);
     let image = read(&npy("|b1", "False", "1, 2", &[0, 1])).expect("truth");
     assert_eq!(image.samples, Samples::U8(vec![0, 255]));
     assert!(image.is_sharp);
@@ -154,10 +141,8 @@ fn arrays_have_their_types_and_shapes() {
 fn tiffs_know_their_place() {
     let expected = Samples::F32((0..12).map(|i| i as f32).collect());
     let image = read(seed!("float.tif")).expect("floats");
-    assert_eq!(
-        (image.samples, image.place),
-        (expected.clone(), Place::Unknown)
-    );
+    assert_eq!(image.place, Place::Unknown);
+    assert_eq!(image.samples, expected);
     let image = read(seed!("geo.tif")).expect("floats");
     assert_eq!(image.samples, expected);
     assert_eq!(image.place, Place::Box([100.0, 194.0, 108.0, 200.0]));
@@ -212,11 +197,7 @@ fn what_is_truncated_is_damaged_wherever_it_ends() {
     ] {
         for end in 0..file.len() - 1 {
             let read = Image::read_picture(Cursor::new(&file[..end]), SMALL);
-            assert!(
-                read.is_err() || end > file.len() - 8,
-                "{end} of {}",
-                file.len()
-            );
+            assert!(read.is_err() || end > file.len() - 8, "{end}");
         }
     }
 }
@@ -254,8 +235,7 @@ fn what_is_not_read_is_named() {
     let array = |descr, order, shape| npy(descr, order, shape, &[0; 4]);
     let infinite = [[0; 8], 1e300_f64.to_le_bytes()].concat();
     for (file, expected) in [
-        (array(">f4", "False", "1, 1"), "an array of type >f4"),
-        (array("<f4", "True", "1, 1"), "an array in Fortran order"),
+        (array(">i4", "False", "1, 1"), "an array of type >i4"),
         (array("<f4", "False", "1, 1, 1"), "an array of 3 dimensions"),
         (array("<f4", "False", "x"), "the array is damaged"),
         (b"GIF89a".to_vec(), "it is of no known format"),
@@ -277,29 +257,12 @@ struct Leaving<'a> {
     stop: &'a Stop,
 }
 
-impl Leaving<'_> {
-    fn look(&self) {
+impl Read for Leaving<'_> {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
         if self.from.position() > self.after {
             self.stop.raise();
         }
-    }
-}
-
-impl Read for Leaving<'_> {
-    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
-        self.look();
         self.from.read(out)
-    }
-}
-
-impl BufRead for Leaving<'_> {
-    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
-        self.look();
-        self.from.fill_buf()
-    }
-
-    fn consume(&mut self, bytes: usize) {
-        self.from.consume(bytes);
     }
 }
 
@@ -315,29 +278,21 @@ fn decoding_ends_soon_after_it_is_not_wanted_any_more() {
     let noise: Vec<u8> = (0..512 * 512_u32)
         .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 ^ (i >> 3) as u8)
         .collect();
-    let floats: Vec<u8> = noise
-        .iter()
-        .flat_map(|v| f32::from(*v).to_le_bytes())
-        .collect();
+    let numbers: Vec<f32> = noise.iter().map(|v| f32::from(*v)).collect();
     for file in [
         png([512, 512], Grayscale, Eight, &noise),
-        npy("<f4", "False", "512, 512", &floats),
+        npy("<f4", "False", "512, 512", &floats(&numbers)),
         npy("|u1", "False", "512, 512", &noise),
     ] {
         let after = file.len() as u64 / 2;
         let stop = Stop::new();
-        let mut from = Leaving {
-            from: Cursor::new(&file),
-            after,
-            stop: &stop,
-        };
-        let read = Image::read(&mut from, Meaning::Data, Limits::FILES, &stop);
+        let from = Cursor::new(&file[..]);
+        let stop = &stop;
+        let mut from = BufReader::with_capacity(1 << 10, Leaving { from, after, stop });
+        let read = Image::read(&mut from, Meaning::Data, Limits::FILES, stop);
         assert!(matches!(read, Err(RasterError::Stopped)), "{read:?}");
-        assert!(
-            from.from.position() < after + (20 << 10),
-            "{}",
-            from.from.position()
-        );
+        let end = from.get_ref().from.position();
+        assert!(end < after + (20 << 10), "{end}");
     }
 }
 
@@ -412,8 +367,6 @@ fn a_palette_is_light_or_its_indices() {
     let gray = png([2, 1], Grayscale, Four, &[0x3f]);
     let image = read_as(&gray, Meaning::Numbers);
     assert_eq!(image.samples, Samples::U8(vec![3, 15]));
-    assert_eq!(
-        read(&gray).expect("gray").samples,
-        Samples::U8(vec![51, 255])
-    );
+    let image = read(&gray).expect("gray");
+    assert_eq!(image.samples, Samples::U8(vec![51, 255]));
 }

@@ -4,13 +4,14 @@ use std::io::{BufRead, Seek};
 
 use strew_core::server::Stop;
 use tiff::{
-    ColorType,
+    ColorType, TiffError,
     decoder::{ChunkType, Decoder, DecodingResult},
     tags::Tag,
 };
 
 use super::{
     chunks::Cut,
+    embedded::Embedded,
     error::RasterError,
     image::{Image, Place},
     limits::Limits,
@@ -49,43 +50,22 @@ pub(super) fn read(
     let place = place(&mut decoder, &keys)?;
     let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation);
     let orientation = orientation.map_err(damaged)?.unwrap_or(1);
-    let palette = match photometric == PALETTE && meaning != Meaning::Numbers {
-        true => Some(palette(&mut decoder)?),
-        false => None,
-    };
-    let mut rows = Pixels {
-        size,
-        layout: layout(&mut decoder)?,
-        meaning,
-        nodata: nodata(&mut decoder),
-        is_inverted: photometric == WHITE_IS_ZERO && meaning != Meaning::Numbers,
-        palette,
-        samples: None,
-        missing: vec![],
-    };
+    let mut rows = Pixels::new(&mut decoder, size, meaning)?;
+    rows.nodata = nodata(&mut decoder);
+    rows.is_inverted = photometric == WHITE_IS_ZERO && meaning != Meaning::Numbers;
+    if photometric == PALETTE && meaning != Meaning::Numbers {
+        rows.palette = Some(palette(&mut decoder)?);
+    }
     rows.read(&mut decoder, stop)?;
     let Layout { bits, channels } = rows.layout;
     let has_light = rows.palette.is_some() || !channels.are_plain(meaning);
     let mut image = rows.image()?;
-    let mask = directories
-        .iter()
-        .enumerate()
-        .skip(1)
-        .filter(|(_, directory)| directory.subfile == 4);
-    for (index, _) in mask {
+    let others = directories.iter().enumerate().skip(1);
+    for (index, _) in others.filter(|(_, directory)| directory.subfile == 4) {
         decoder.seek_to_image(index).map_err(damaged)?;
         let of = decoder.dimensions().map_err(damaged)?;
         if of == (width, height) {
-            let mut rows = Pixels {
-                size,
-                layout: layout(&mut decoder)?,
-                meaning: Meaning::Numbers,
-                nodata: None,
-                is_inverted: false,
-                palette: None,
-                samples: None,
-                missing: vec![],
-            };
+            let mut rows = Pixels::new(&mut decoder, size, Meaning::Numbers)?;
             rows.read(&mut decoder, stop)?;
             let mask = rows.image()?.samples;
             image = image.without((0..mask.len()).map(|i| mask.get(i) == 0.0).collect());
@@ -127,6 +107,7 @@ fn layout(decoder: &mut File<impl BufRead + Seek>) -> Result<Layout, RasterError
         ColorType::Gray(_) | ColorType::Multiband { num_samples: 1, .. } => (false, false),
         ColorType::Multiband { num_samples: 2, .. } if is_alpha => (false, true),
         ColorType::RGB(_) => (true, false),
+        ColorType::YCbCr(8) if Embedded::of(decoder)?.is_some_and(|of| of.is_jpeg) => (true, false),
         ColorType::RGBA(_) => (true, true),
         other => return Err(unsupported(kind(other))),
     };
@@ -161,6 +142,23 @@ struct Pixels {
 }
 
 impl Pixels {
+    fn new(
+        decoder: &mut File<impl BufRead + Seek>,
+        size: [usize; 2],
+        meaning: Meaning,
+    ) -> Result<Self, RasterError> {
+        Ok(Self {
+            size,
+            layout: layout(decoder)?,
+            meaning,
+            nodata: None,
+            is_inverted: false,
+            palette: None,
+            samples: None,
+            missing: vec![],
+        })
+    }
+
     fn read(
         &mut self,
         decoder: &mut File<impl BufRead + Seek>,
@@ -187,12 +185,28 @@ impl Pixels {
             chunks: expected,
         };
         cut.check(decoder)?;
+        let embedded = Embedded::of(decoder)?;
+        let bytes = u64::from(across) * u64::from(tall) * cut.channels as u64;
+        match self.layout.bits {
+            _ if embedded.is_none() => {}
+            8 if bytes <= CHUNK_BYTES as u64 => {}
+            8 => return Err(damaged(TiffError::LimitsExceeded)),
+            bits => return Err(unsupported(format!("JPEGs or WebPs of {bits} bits"))),
+        }
         for chunk in 0..expected as u32 {
             look(stop)?;
-            let decoded = decoder.read_chunk(chunk).map_err(damaged)?;
             let corner = [chunk % columns * across, chunk / columns * tall].map(|v| v as usize);
-            let sides = [across as usize, tall as usize];
-            let sides = [0, 1].map(|axis| sides[axis].min(self.size[axis] - corner[axis]));
+            let whole = [across as usize, tall as usize];
+            let sides = [0, 1].map(|axis| whole[axis].min(self.size[axis] - corner[axis]));
+            let decoded = match &embedded {
+                #[cfg(feature = "compressions")]
+                Some(embedded) => {
+                    let from = decoder.inner();
+                    let read = embedded.read(from, chunk as usize, whole, sides, cut.channels);
+                    DecodingResult::U8(read?)
+                }
+                _ => decoder.read_chunk(chunk).map_err(damaged)?,
+            };
             self.put(decoded, corner, sides)?;
         }
         Ok(())
@@ -249,13 +263,9 @@ impl Pixels {
             let colors = channels.count() - usize::from(channels.has_alpha);
             let is_nodata = |value: &D| Into::<u64>::into(*value) as f64 == nodata;
             let pixels = values.chunks_exact(channels.count());
-            let all = pixels.map(|pixel| pixel[..colors].iter().all(is_nodata));
-            match missing.is_empty() {
-                true => missing.extend(all),
-                false => missing
-                    .iter_mut()
-                    .zip(all)
-                    .for_each(|(missing, is)| *missing |= is),
+            missing.resize(pixels.len(), false);
+            for (missing, pixel) in missing.iter_mut().zip(pixels) {
+                *missing |= pixel[..colors].iter().all(is_nodata);
             }
         }
         let inverted: Vec<D>;
@@ -268,13 +278,9 @@ impl Pixels {
             false => values,
         };
         let samples = if let Some(palette) = &self.palette {
-            let light = |value: &D| palette.get(Into::<u64>::into(*value) as usize).copied();
-            Samples::U16(
-                values
-                    .iter()
-                    .map(|value| light(value).unwrap_or(0))
-                    .collect(),
-            )
+            let light = |value: &D| palette.get(Into::<u64>::into(*value) as usize);
+            let all = values.iter().map(|value| light(value).copied());
+            Samples::U16(all.map(Option::unwrap_or_default).collect())
         } else if channels.are_plain(meaning) {
             let mut plain = vec![];
             tone::plain(values, channels, &mut plain);
@@ -399,6 +405,7 @@ fn place(
         numbers(Tag::ModelTiepointTag)?,
         numbers(Tag::ModelTransformationTag)?,
     );
+    let unusable = |why| Ok(Georeference::Unusable(why));
     let scale = scale.filter(|scale| scale.len() >= 2 && scale[0] != 0.0 && scale[1] != 0.0);
     let [a, b, c, d, e, f] = match (scale.as_deref(), tie.as_deref(), matrix.as_deref()) {
         (Some([sx, sy, ..]), Some([i, j, _, x, y, _, ..]), _) => {
@@ -406,25 +413,11 @@ fn place(
         }
         (_, _, Some([a, b, _, c, d, e, _, f, ..])) => [*a, *b, *c, *d, *e, *f],
         (_, Some([_, _, _, _, _, _, _, ..]), _) => {
-            return Ok(Georeference::Unusable(
-                "it has control points and no place along the axes",
-            ));
+            return unusable("it has control points and no place along the axes");
         }
-        (_, Some(_), _) => {
-            return Ok(Georeference::Unusable(
-                "it has a tie point and no size of a pixel",
-            ));
-        }
-        (Some(_), ..) => {
-            return Ok(Georeference::Unusable(
-                "it has the size of a pixel and no tie point",
-            ));
-        }
-        _ if epsg(keys).is_some() => {
-            return Ok(Georeference::Unusable(
-                "it has a reference system and no place",
-            ));
-        }
+        (_, Some(_), _) => return unusable("it has a tie point and no size of a pixel"),
+        (Some(_), ..) => return unusable("it has the size of a pixel and no tie point"),
+        _ if epsg(keys).is_some() => return unusable("it has a reference system and no place"),
         _ => return Ok(Georeference::None),
     };
     // GTRasterTypeGeoKey 2: places are those of the pixels' centers.

@@ -4,9 +4,9 @@ use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use super::error::RasterError;
 
-const ALLOWED: &str = "one channel of 1 to 32 bits (integers or floats) or of 64-bit floats, or a palette, or RGB of \
-                       8 or 16 bits, either with alpha; pixels side by side; compression with LZW, PackBits or \
-                       deflate, or none, such as gdal_translate -co COMPRESS=DEFLATE makes";
+const ALLOWED: &str = "one channel of 1, 2, 4, 8, 16 or 32 bits (integers or floats) or of 64-bit floats, or a palette, or \
+                       RGB of 8 or 16 bits, either with alpha; pixels side by side; compression with deflate, LZW or \
+                       PackBits, or none, such as gdal_translate -co COMPRESS=DEFLATE makes";
 
 pub(super) fn damaged(error: TiffError) -> RasterError {
     match error {
@@ -41,14 +41,10 @@ fn compression(method: u16) -> String {
     let names = [
         (2, "CCITT"),
         (3, "CCITT fax 3"),
-        (4, "CCITT fax 4"),
-        (6, "JPEG"),
-        (7, "JPEG"),
+        (6, "JPEG of the kind before TIFF 6"),
         (34712, "JPEG 2000"),
         (34887, "LERC"),
         (34925, "LZMA"),
-        (50000, "ZSTD"),
-        (50001, "WebP"),
         (50002, "JPEG XL"),
     ];
     let known = names.into_iter().find(|(code, _)| *code == method);
@@ -56,10 +52,7 @@ fn compression(method: u16) -> String {
 }
 
 pub(super) fn broken(detail: &str) -> RasterError {
-    RasterError::Damaged {
-        format: "TIFF",
-        detail: detail.into(),
-    }
+    RasterError::damaged("TIFF", detail)
 }
 
 pub(super) fn kind(color: ColorType) -> String {

@@ -65,37 +65,28 @@ pub(super) trait Depth: Copy + Into<u64> {
     fn samples(values: Vec<Self>) -> Samples;
 }
 
-impl Depth for u8 {
-    const FULL: u64 = 255;
+macro_rules! depth {
+    ($number:ty, $samples:ident, $light:ident) => {
+        impl Depth for $number {
+            const FULL: u64 = <$number>::MAX as u64;
 
-    fn samples(values: Vec<Self>) -> Samples {
-        Samples::U8(values)
-    }
+            fn samples(values: Vec<Self>) -> Samples {
+                Samples::$samples(values)
+            }
 
-    fn light(self) -> f32 {
-        LIGHT_8[usize::from(self)]
-    }
+            fn light(self) -> f32 {
+                $light[usize::from(self)]
+            }
 
-    fn cut(value: u64) -> Self {
-        value as Self
-    }
+            fn cut(value: u64) -> Self {
+                value as Self
+            }
+        }
+    };
 }
 
-impl Depth for u16 {
-    const FULL: u64 = 65535;
-
-    fn samples(values: Vec<Self>) -> Samples {
-        Samples::U16(values)
-    }
-
-    fn light(self) -> f32 {
-        LIGHT_16[usize::from(self)]
-    }
-
-    fn cut(value: u64) -> Self {
-        value as Self
-    }
-}
+depth!(u8, U8, LIGHT_8);
+depth!(u16, U16, LIGHT_16);
 
 /// Adds the pixels of a row that are [plain](Channels::are_plain).
 pub(super) fn plain<D: Depth>(row: &[D], channels: Channels, into: &mut Vec<D>) {

@@ -4,12 +4,13 @@
 //! streams hold their share of memory to the end. A program that embeds the service without any of this uses a
 //! [`Library`](strew_plan::Library).
 
-use std::{fmt, path::PathBuf, sync::Arc};
+use std::{fmt, path::PathBuf, pin::pin, sync::Arc};
 
 use crate::access::Caller;
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
+use moka::future::Cache;
 use strew_catalog::{
     Entry, Ready, Reload,
     except::NamedList,
@@ -17,13 +18,12 @@ use strew_catalog::{
 };
 use strew_config::{Config, Limits};
 use strew_core::server::{Stop, Visits};
-use strew_encode::Answer;
+use strew_encode::{Answer, Index, Output, Piece};
 use strew_error::Error;
 use strew_plan::{
     Found, Lane, Neighbors, Placed, Planned, considered, effort, library,
     store::{self, Need},
 };
-use strew_query as query;
 use strew_query::{Assets, Draft, Nearest, Options, Query, Set, Token};
 
 use crate::{
@@ -31,7 +31,7 @@ use crate::{
     Workers,
     cache::{CacheState, Samplers},
     mixes::Mixes,
-    portrait::Portraits,
+    portrait,
     record::{Recorded, allowance},
 };
 
@@ -41,12 +41,18 @@ pub struct Service {
     limits: Limits,
     samplers: Samplers,
     mixes: Mixes,
-    portraits: Portraits,
+    /// By the digest of a table.
+    portraits: Cache<String, Arc<Portrait>>,
+    /// Where the bytes of answers lie, by the tag of an answer.
+    indices: Cache<Vec<u8>, Arc<Index>>,
     streams: Arc<Streams>,
     points_in_flight: PointsInFlight,
     budget: Budget,
     pub(super) workers: Workers,
 }
+
+/// The memory of the indices that are kept: a footer has about a thousandth of the bytes of its file.
+const INDEX_BYTES: u64 = 16 << 20;
 
 impl fmt::Debug for Service {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -61,7 +67,12 @@ impl Service {
         Self {
             mixes: Mixes::new(samplers.clone(), budget.clone(), None),
             samplers,
-            portraits: Portraits::new(),
+            portraits: Cache::new(portrait::MOST),
+            indices: Cache::builder()
+                .name("indices")
+                .max_capacity(INDEX_BYTES)
+                .weigher(|_, index: &Arc<Index>| 2048 + (index.size() >> 10) as u32)
+                .build(),
             streams: Arc::new(Streams::new(limits.max_streams)),
             points_in_flight: PointsInFlight::default(),
             budget,
@@ -149,14 +160,7 @@ impl Service {
         let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
         let allowance = allowance(stop);
         let (query, options) = draft.check_within(&catalog, vertices, allowance)?;
-        match options.encoding {
-            Some(encoding) if !encoding.is_streamed() => {
-                let format = &query::parameters::FORMAT;
-                let detail = "only `strew sample` writes it";
-                Err(draft.values.fault(format, detail).into())
-            }
-            _ => Ok((query.into(), options)),
-        }
+        Ok((query.into(), options))
     }
 
     /// Admits a caller and plans a query whose points are to be made, charging the points considered.
@@ -164,16 +168,17 @@ impl Service {
         &self,
         caller: &Caller,
         query: Box<Query>,
-        picture: Option<u32>,
+        output: Option<&Output>,
     ) -> Result<(Permit, Planned), Error> {
         /// The pixels of a picture that are drawn and packed in a microsecond.
         const PIXELS: u128 = 500;
         // Waiting for labels takes no place.
         let tables = self.tables(caller, &query).await?;
-        let permit = self.admit(caller, picture)?;
+        let permit = self.admit(caller, output.map_or(0, Output::room))?;
         let planned = self.charged(caller, query, tables).await?;
         self.check_points(caller, &planned)?;
-        let drawn = picture.map_or(0, |side| u128::from(side).pow(2) / PIXELS);
+        let picture = output.filter(|output| output.encoding.traits().is_picture);
+        let drawn = picture.map_or(0, |output| output.room() as u128 / PIXELS);
         caller.charge(considered(&planned) + drawn)?;
         // No more than the limit, which has 64 bits.
         let points = u64::try_from(planned.count()).unwrap_or(u64::MAX);
@@ -275,15 +280,12 @@ impl Service {
         Ok(store::with_made(ready, set, made.table))
     }
 
-    /// Admits one more stream of a caller; a picture of that size is held whole.
-    pub(super) fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
+    /// Admits one more stream of a caller, which is made in so many bytes besides blocks, rows and text.
+    pub(super) fn admit(&self, caller: &Caller, room: usize) -> Result<Permit, Error> {
         /// The bytes in which rows and text are made, besides blocks.
         const ROWS: usize = 2 << 20;
-        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
         let blocks = self.limits.block_bytes.saturating_mul(4);
-        let held = blocks
-            .saturating_add(ROWS)
-            .saturating_add(side.saturating_mul(side));
+        let held = blocks.saturating_add(ROWS).saturating_add(room);
         let place = caller.place(self.streams.places())?;
         let permit = self.streams.admit()?;
         Ok(permit.with(place, self.hold(held)?))
@@ -351,12 +353,21 @@ impl Service {
     }
 
     pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
-        self.portraits.get(entry, &self.workers).await
+        let make = async {
+            let entry = entry.clone();
+            let draw = move |_: &_| Portrait::new(&entry).map(Arc::new);
+            self.workers.take_turn(Lane::Making, draw).await?
+        };
+        let made = self
+            .portraits
+            .try_get_with_by_ref(&entry.digest, make)
+            .await;
+        made.map_err(|error| (*error).clone())
     }
 
     /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
     /// block would take longer than making it.
-    pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
+    pub fn at_once(&self, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
         for block in Recorded::new(answer) {
             let block = block?;
@@ -367,6 +378,37 @@ impl Service {
             };
         }
         Ok(whole)
+    }
+
+    /// Where the bytes of an answer in blocks lie, which is not known before all are made: once for each tag.
+    pub async fn index(
+        &self,
+        tag: Vec<u8>,
+        open: impl Future<Output = Result<(Permit, Answer), Error>>,
+    ) -> Result<Arc<Index>, Error> {
+        let make = async {
+            let (permit, answer) = open.await?;
+            let Some(Piece::Points(each)) = answer.piece() else {
+                return Err(Error::Internal("an answer has no blocks"));
+            };
+            let mut blocks = pin!(self.blocks(permit, answer));
+            let (mut front, mut last) = (None, Bytes::new());
+            let (mut end, mut ends) = (0, vec![]);
+            while let Some(block) = blocks.next().await {
+                last = block.map_err(|_| Error::Internal("an answer broke off"))?;
+                if front.is_none() {
+                    front = Some(last.clone());
+                } else {
+                    end += last.len() as u64;
+                    ends.push(end);
+                }
+            }
+            ends.pop();
+            let front = front.unwrap_or_default();
+            Ok(Arc::new(Index::ending(front, each, ends, last)))
+        };
+        let made = Box::pin(self.indices.try_get_with(tag, make)).await;
+        made.map_err(|error| (*error).clone())
     }
 
     /// Streams the blocks of an answer. One that cannot be made to its end breaks off.

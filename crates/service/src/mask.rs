@@ -57,7 +57,7 @@ impl MaskQuery {
 
     fn draw(&self, drawn: Drawn, stop: &Stop) -> Result<Vec<u8>, Error> {
         let table = self.entry.table()?;
-        let mask = Mask::new_while(&table, self.size, self.seed, || !stop.is_raised());
+        let mask = Mask::new_while(&table, self.size, self.seed, |_| !stop.is_raised());
         let mask = mask.map_err(refused)?;
         let mask = mask.ok_or(Error::Internal("nothing waits for the mask any more"))?;
         match drawn {

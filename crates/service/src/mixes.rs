@@ -52,12 +52,6 @@ struct Waiter(Option<(Making, Option<Arc<Record>>)>);
 /// The time for which a mix goes on for clients that are to retry.
 const UNTIL_THEY_COME: Duration = Duration::from_secs(60);
 
-impl Waiter {
-    fn over(mut self) {
-        self.0 = None;
-    }
-}
-
 impl Drop for Waiter {
     fn drop(&mut self) {
         let Some((making, Some(record))) = self.0.take() else {
@@ -126,9 +120,9 @@ impl Mixes {
         workers: &Workers,
     ) -> Result<Ready, Error> {
         let making = self.begin(plain, what, workers)?;
-        let waiter = Waiter(Some((making.clone(), Record::current())));
+        let mut waiter = Waiter(Some((making.clone(), Record::current())));
         let made = making.await;
-        waiter.over();
+        waiter.0 = None;
         made
     }
 
@@ -153,8 +147,7 @@ impl Mixes {
             .make(name.clone(), plain.clone(), what.clone(), workers.clone());
         // The work belongs to the first request that wants it, whichever request polls it.
         let begun = owner.clone().scope(work).boxed().shared();
-        let weak = begun.downgrade();
-        if let Some(weak) = weak {
+        if let Some(weak) = begun.downgrade() {
             let begun_now = Begun {
                 making: weak,
                 owner,

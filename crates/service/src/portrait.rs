@@ -2,20 +2,14 @@
 //!
 //! A portrait takes a good part of a second to make, so each is made once and kept.
 
-use std::sync::Arc;
-
-use moka::future::Cache;
 use strew_catalog::Entry;
 use strew_error::Error;
 use strew_forge::{Report, Resolution, figure, measure::window_set};
-use strew_plan::Lane;
-
-use crate::Workers;
 
 /// The number of points in a portrait.
 const POINTS: u64 = 20_000;
 /// No more portraits are kept; each has about 60 kB.
-const MOST: u64 = 64;
+pub(super) const MOST: u64 = 64;
 
 /// Curves and a picture of a table's points.
 #[derive(Clone, Debug)]
@@ -31,7 +25,7 @@ pub struct Portrait {
 }
 
 impl Portrait {
-    fn new(entry: &Entry) -> Result<Self, Error> {
+    pub(super) fn new(entry: &Entry) -> Result<Self, Error> {
         let table = entry.table()?;
         let set = window_set(&table, POINTS, 1);
         let report = Report::of("window seed 1".into(), false, &set, Resolution::default());
@@ -47,38 +41,5 @@ impl Portrait {
             rdf: report.rdf.bins,
             svg,
         })
-    }
-}
-
-/// The portraits that clients have requested.
-#[derive(Clone)]
-pub(super) struct Portraits {
-    made: Cache<String, Arc<Portrait>>,
-}
-
-impl Portraits {
-    pub(super) fn new() -> Self {
-        Self {
-            made: Cache::new(MOST),
-        }
-    }
-
-    /// The portrait of a table.
-    pub(super) async fn get(
-        &self,
-        entry: &Arc<Entry>,
-        workers: &Workers,
-    ) -> Result<Arc<Portrait>, Error> {
-        let make = async {
-            let entry = entry.clone();
-            let made = workers
-                .take_turn(Lane::Making, move |_| Portrait::new(&entry))
-                .await?;
-            Ok::<_, Error>(Arc::new(made?))
-        };
-        self.made
-            .try_get_with_by_ref(&entry.digest, make)
-            .await
-            .map_err(|error| (*error).clone())
     }
 }

@@ -52,7 +52,7 @@ impl Authority {
 
     /// A certificate that is valid to the beginning of a year.
     fn issue(&self, purpose: ExtendedKeyUsagePurpose, year: i32) -> Certificate {
-        let mut params = CertificateParams::new(names()).expect("names");
+        let mut params = CertificateParams::new(NAMES.map(String::from)).expect("names");
         params.extended_key_usages = vec![purpose];
         params.not_after = date_time_ymd(year, 1, 1);
         let key = KeyPair::generate().expect("a key");
@@ -64,16 +64,14 @@ impl Authority {
 /// A self-signed certificate for `localhost` and `127.0.0.1` that is an authority, as `openssl req -x509`
 /// makes them, valid to the beginning of a year.
 pub fn self_signed(year: i32) -> Certificate {
-    let mut params = CertificateParams::new(names()).expect("names");
+    let mut params = CertificateParams::new(NAMES.map(String::from)).expect("names");
     params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
     params.not_after = date_time_ymd(year, 1, 1);
     let key = KeyPair::generate().expect("a key");
     Certificate::new(&params.self_signed(&key).expect("signed"), &key)
 }
 
-fn names() -> Vec<String> {
-    vec!["localhost".to_owned(), "127.0.0.1".to_owned()]
-}
+const NAMES: [&str; 2] = ["localhost", "127.0.0.1"];
 
 /// A certificate with its key. The key is PKCS #8.
 pub struct Certificate {

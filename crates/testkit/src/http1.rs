@@ -215,14 +215,7 @@ impl Response {
     /// Reads to the end of the connection and keeps nothing. Returns whether the body was complete
     /// and nothing followed it.
     pub fn drain(mut self) -> bool {
-        let mut buffer = vec![0; 1 << 18];
-        loop {
-            match self.read(&mut buffer) {
-                Ok(0) => return self.is_closed(),
-                Ok(_) => {}
-                Err(_) => return false,
-            }
-        }
+        io::copy(&mut self, &mut io::sink()).is_ok() && self.is_closed()
     }
 
     /// Everything that arrives until the connection ends, HTTP's framing included.

@@ -72,7 +72,7 @@ impl Running {
     pub fn signal(&self, name: &str) {
         let process = self.id().to_string();
         until("a command takes signals", || {
-            (!ignored(&process).contains(&name)).then_some(())
+            !ignored(&process).contains(&name)
         });
         signal(self.id(), name);
     }

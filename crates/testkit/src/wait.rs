@@ -8,15 +8,32 @@ pub const PATIENCE: Duration = Duration::from_secs(90);
 /// The pause between two looks at a condition.
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// Calls `poll` until it returns a value, and returns that value.
+/// What a look returns: whether a condition holds, or the value that was waited for.
+pub trait Look<T> {
+    fn found(self) -> Option<T>;
+}
+
+impl<T> Look<T> for Option<T> {
+    fn found(self) -> Self {
+        self
+    }
+}
+
+impl Look<()> for bool {
+    fn found(self) -> Option<()> {
+        self.then_some(())
+    }
+}
+
+/// Looks until a condition holds, or until there is a value, and returns that value.
 ///
 /// # Panics
 ///
 /// After [`PATIENCE`]; `what` completes the sentence "waited in vain until …".
-pub fn until<T>(what: &str, mut poll: impl FnMut() -> Option<T>) -> T {
+pub fn until<T, L: Look<T>>(what: &str, mut look: impl FnMut() -> L) -> T {
     let start = Instant::now();
     loop {
-        if let Some(value) = poll() {
+        if let Some(value) = look().found() {
             return value;
         }
         assert!(start.elapsed() < PATIENCE, "waited in vain until {what}");

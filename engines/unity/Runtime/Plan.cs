@@ -18,7 +18,7 @@ namespace Strew
         /// <summary>The number of points.</summary>
         public int Count { get; }
 
-        private UIntPtr Capacity => (UIntPtr)(uint)Count;
+        private static UIntPtr Capacity(Array numbers) => (UIntPtr)(uint)numbers.Length;
 
         /// <summary>The place that the numbers of <see cref="Positions"/> are relative to: x, y.</summary>
         public double[] Origin()
@@ -32,7 +32,7 @@ namespace Strew
         public double[] Positions()
         {
             var xy = new double[2 * Count];
-            StrewException.Check(Native.strew_plan_fill_coordinates(handle, xy, Capacity));
+            StrewException.Check(Native.strew_plan_fill_coordinates(handle, xy, Capacity(xy)));
             return xy;
         }
 
@@ -42,14 +42,14 @@ namespace Strew
         {
             var xy = new float[2 * Count];
             origin = new double[2];
-            StrewException.Check(Native.strew_plan_fill_coordinates_f32(handle, xy, Capacity, origin));
+            StrewException.Check(Native.strew_plan_fill_coordinates_f32(handle, xy, Capacity(xy), origin));
             return xy;
         }
 
         /// <summary>Writes what <see cref="Offsets"/> returns to memory that is not an array's.</summary>
         /// <param name="xy">Room for two floats of each point, such as
         /// <c>(IntPtr)NativeArrayUnsafeUtility.GetUnsafePtr(array)</c>.</param>
-        /// <param name="capacity">The points that there is room for.</param>
+        /// <param name="capacity">The floats that there is room for.</param>
         /// <exception cref="StrewException">There is too little room.</exception>
         public double[] WriteOffsets(IntPtr xy, int capacity)
         {
@@ -63,7 +63,7 @@ namespace Strew
         public long[] Ids()
         {
             var ids = new long[2 * Count];
-            StrewException.Check(Native.strew_plan_fill_ids(handle, ids, Capacity));
+            StrewException.Check(Native.strew_plan_fill_ids(handle, ids, Capacity(ids)));
             return ids;
         }
 
@@ -72,7 +72,7 @@ namespace Strew
         {
             var values = new double[Count];
             StrewException.Check(
-                Native.strew_plan_fill_numbers(handle, Library.Utf8(column), values, Capacity));
+                Native.strew_plan_fill_numbers(handle, Library.Utf8(column), values, Capacity(values)));
             return values;
         }
 
@@ -80,7 +80,7 @@ namespace Strew
         public int[] Codes(string column)
         {
             var codes = new int[Count];
-            StrewException.Check(Native.strew_plan_fill_codes(handle, Library.Utf8(column), codes, Capacity));
+            StrewException.Check(Native.strew_plan_fill_codes(handle, Library.Utf8(column), codes, Capacity(codes)));
             return codes;
         }
 

@@ -49,7 +49,7 @@ internal static class Program
             foreach (int code in plan.Codes("variant")) oaks += code == 1 ? 1 : 0;
             Expect(oaks > plan.Count / 2 && oaks < plan.Count, "more oaks than birches");
             IntPtr memory = Marshal.AllocHGlobal(8 * plan.Count);
-            plan.WriteOffsets(memory, plan.Count);
+            plan.WriteOffsets(memory, 2 * plan.Count);
             var copied = new float[2 * plan.Count];
             Marshal.Copy(memory, copied, 0, copied.Length);
             Marshal.FreeHGlobal(memory);

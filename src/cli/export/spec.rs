@@ -90,14 +90,7 @@ impl Spec {
         let finest = Level::new(shape.size, 1.0, with_lod(given.as_deref()), bbox)?;
         let first = check(flags.text(&WORLD), &finest, catalog, config)?;
         let encoding = first.output.encoding;
-        if !encoding.is_streamed() {
-            let formats = Encoding::names(Encoding::ALL);
-            refuse!(
-                "--format {}: no daemon writes it; allowed: {formats}",
-                encoding.name()
-            );
-        }
-        let usual = if encoding.is_text() {
+        let usual = if encoding.traits().is_text {
             vec![Compression::Gzip]
         } else {
             vec![]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strew_core::{F64, Placement, Plan, PointSet, Seed, Table, Twin};
+use strew_core::{F64, Plan, PointSet, Table, Twin};
 use strew_error::Error;
 use strew_forge::{
     Aim, Report, Resolution, Target, figure,
@@ -23,6 +23,7 @@ use super::{
     flags::{self, Flags},
     must_be_within,
     output::Output,
+    progress::{Progress, Steps},
     query::described,
     refuse,
 };
@@ -79,25 +80,21 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(file) = &args.table
         && let Some(table) = in_space(file)?
     {
-        for (flag, is_given) in [
-            ("--picture", args.picture.is_some()),
-            ("--nu-max", args.nu_max.is_some()),
-            ("--ring-width", args.ring_width.is_some()),
-        ] {
-            if is_given {
-                let file = file.display();
-                refuse!("{flag} is of points of the plane, and {file} has points in space");
-            }
+        let picture = args.picture.as_ref().map(|_| "--picture");
+        let nu_max = args.nu_max.map(|_| "--nu-max");
+        let ring_width = args.ring_width.map(|_| "--ring-width");
+        if let Some(flag) = picture.or(nu_max).or(ring_width) {
+            let file = file.display();
+            refuse!("{flag} is of points of the plane, and {file} has points in space");
         }
-        let mut output = Output::open(args.output.as_deref())?;
+        let output = Output::open(args.output.as_deref())?;
         let text = space::document(&args.subjects, &table)?;
-        output.write(format!("{text:#}\n").as_bytes())?;
-        return Ok(output.finish()?);
+        return output.end_with(format!("{text:#}\n").as_bytes());
     }
     if args.subjects.window_at.is_some() {
         refuse!("--window-at: only windows of tables of points in space have a place");
     }
-    let mut output = Output::open(args.output.as_deref())?;
+    let output = Output::open(args.output.as_deref())?;
     let drawing = args.picture.as_deref();
     let drawing = drawing.map(|path| Output::open(Some(path))).transpose()?;
     let Measurement {
@@ -114,7 +111,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             .map(|report| report.compared(target))
             .collect();
     }
-    if let (Some(mut drawing), Some(report)) = (drawing, reports.first()) {
+    if let (Some(drawing), Some(report)) = (drawing, reports.first()) {
         let subject = &report.figures.subject;
         let stem = args.table.as_deref().and_then(Path::file_stem);
         let title = stem.map_or_else(
@@ -122,15 +119,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             |stem| format!("{}: {subject}", stem.display()),
         );
         let svg = figure::report(report, &title, target.as_ref()).to_svg();
-        drawing.write(svg.as_bytes())?;
-        drawing.finish()?;
+        drawing.end_with(svg.as_bytes())?;
     }
     let mut text = json!({ "subjects": reports.iter().map(document).collect::<Vec<_>>() });
     if let Some(seeds) = seeds {
         text["seeds"] = seeds;
     }
-    output.write(format!("{text:#}\n").as_bytes())?;
-    Ok(output.finish()?)
+    output.end_with(format!("{text:#}\n").as_bytes())
 }
 
 /// The table of a file, if its points are in space.
@@ -164,12 +159,18 @@ fn of_table(args: &Args, file: &Path) -> Result<Measurement, Failure> {
         let set = window_set(&table, args.subjects.window_points.unwrap_or(80_000), seed);
         subjects.push((format!("window seed {seed}"), false, set));
     }
-    let reports = subjects
-        .into_par_iter()
-        .map(|(name, seen, set)| Report::of(name, seen, &set, args.resolution()));
+    let progress = Progress::new("point sets measured", subjects.len() as u64, false);
+    let steps = Steps::new(progress, 0);
+    let reports = subjects.into_par_iter().map(|(name, seen, set)| {
+        let report = Report::of(name, seen, &set, args.resolution());
+        steps.step();
+        report
+    });
+    let reports = reports.collect();
+    steps.finish();
     let aim = Aim::of(table.profile(), table.provenance());
     Ok(Measurement {
-        reports: reports.collect(),
+        reports,
         target: aim.and_then(|aim| aim.curve),
         seeds: None,
     })
@@ -198,7 +199,7 @@ impl Args {
             is_periodic: self.periodic,
             resolution: self.resolution(),
         };
-        let mut report = measure(points, &of).map_err(refused)?;
+        let mut report = measure(points, &of, &Default::default()).map_err(refused)?;
         report.figures.subject = subject;
         Ok(report)
     }
@@ -222,21 +223,16 @@ impl Args {
 
 fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<Value> {
     const PATCHES: usize = 64;
-    let Placement { seed, .. } = plan.placement();
     let sets = (0..seeds).map(|i| {
-        let seed = Seed(seed.0.wrapping_add(i));
+        let mut placement = plan.placement();
+        placement.seed.0 = placement.seed.0.wrapping_add(i);
         let set = PointSet::new(plan.table().clone());
-        let plan = set
-            .placed(Placement {
-                seed,
-                ..plan.placement()
-            })
-            .within(plan.region())?;
+        let plan = set.placed(placement).within(plan.region())?;
         let mut points = vec![[0.0; 2]; plan.count() as usize];
         plan.blocks::<F64>().fill(&mut points);
         let [x, y] = plan.origin();
         let points = points.into_iter().map(|p| [p[0] - x, p[1] - y]).collect();
-        Ok((seed.0, Sample::window(side, density, points)))
+        Ok((placement.seed.0, Sample::window(side, density, points)))
     });
     let sets: Vec<(u64, Sample)> = sets.collect::<anyhow::Result<_>>()?;
     let recurrences: Vec<Value> = sets

@@ -75,14 +75,8 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
             pairs.push(json!([a, b, power[0], power[1], phase[0], phase[1]]));
         }
     }
-    let compared = [
-        "a",
-        "b",
-        "power_correlation",
-        "power_by_chance",
-        "phase_peak",
-        "phase_by_chance",
-    ];
+    let [power, phase] = ["power", "phase"].map(|of| format!("{of}_by_chance"));
+    let compared = json!(["a", "b", "power_correlation", power, "phase_peak", phase]);
     Ok(json!({
         "subjects": subjects,
         "thinned": { "columns": ["seed", "share", "points", "low_power"], "sets": thinned },

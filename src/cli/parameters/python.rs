@@ -80,9 +80,8 @@ pub(super) fn python(table: &[&Parameter]) -> String {
     let [regions, window, output, kinds] = lists(table, "\"");
     // A kind stays beside its name.
     let kinds = wrapped(&kinds.replace(": ", ":~"), "    ").replace(":~", ": ");
-    let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
-        .map(|encoding| format!("\"{}\", ", encoding.name()))
-        .collect();
+    let placed = Encoding::ALL.iter().filter(|of| of.traits().has_crs);
+    let placed: String = placed.map(|of| format!("\"{}\", ", of.name())).collect();
     let about: String = of_query()
         .iter()
         .flat_map(|section| section.of(table))

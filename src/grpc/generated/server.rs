@@ -46,7 +46,7 @@ pub mod point_service_server {
         async fn count_points(
             &self,
             request: tonic::Request<
-                crate::grpc::codec::Raw<crate::grpc::proto::CountPointsRequest>,
+                crate::grpc::codec::Raw<crate::grpc::proto::StreamPointsRequest>,
             >,
         ) -> std::result::Result<
             tonic::Response<crate::grpc::proto::CountPointsResponse>,
@@ -258,7 +258,7 @@ pub mod point_service_server {
                     impl<
                         T: PointService,
                     > tonic::server::UnaryService<
-                        crate::grpc::codec::Raw<crate::grpc::proto::CountPointsRequest>,
+                        crate::grpc::codec::Raw<crate::grpc::proto::StreamPointsRequest>,
                     > for CountPointsSvc<T> {
                         type Response = crate::grpc::proto::CountPointsResponse;
                         type Future = BoxFuture<
@@ -269,7 +269,7 @@ pub mod point_service_server {
                             &mut self,
                             request: tonic::Request<
                                 crate::grpc::codec::Raw<
-                                    crate::grpc::proto::CountPointsRequest,
+                                    crate::grpc::proto::StreamPointsRequest,
                                 >,
                             >,
                         ) -> Self::Future {

@@ -3,38 +3,35 @@
 const MOST_FIELDS: usize = 27;
 /// The number of shapes that are requests: the first ones.
 #[cfg(test)]
-pub(super) const REQUESTS: usize = 10;
+pub(super) const REQUESTS: usize = 9;
 impl Shaped for proto::StreamPointsRequest {
     const SHAPE: usize = 0;
 }
-impl Shaped for proto::CountPointsRequest {
+impl Shaped for proto::SplitPointsRequest {
     const SHAPE: usize = 1;
 }
-impl Shaped for proto::SplitPointsRequest {
+impl Shaped for proto::GetPointRequest {
     const SHAPE: usize = 2;
 }
-impl Shaped for proto::GetPointRequest {
+impl Shaped for proto::FindNearestRequest {
     const SHAPE: usize = 3;
 }
-impl Shaped for proto::FindNearestRequest {
+impl Shaped for proto::ListProfilesRequest {
     const SHAPE: usize = 4;
 }
-impl Shaped for proto::ListProfilesRequest {
+impl Shaped for proto::ListPeriodsRequest {
     const SHAPE: usize = 5;
 }
-impl Shaped for proto::ListPeriodsRequest {
+impl Shaped for proto::GetMaskRequest {
     const SHAPE: usize = 6;
 }
-impl Shaped for proto::GetMaskRequest {
+impl Shaped for proto::ListFieldsRequest {
     const SHAPE: usize = 7;
 }
-impl Shaped for proto::ListFieldsRequest {
+impl Shaped for proto::ListWorldsRequest {
     const SHAPE: usize = 8;
 }
-impl Shaped for proto::ListWorldsRequest {
-    const SHAPE: usize = 9;
-}
-pub(super) static SHAPES: [Shape; 45] = [
+pub(super) static SHAPES: [Shape; 44] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),
         is_field: false,
@@ -42,19 +39,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "region",
-                kind: Kind::Message(10),
+                kind: Kind::Message(9),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "set",
-                kind: Kind::Message(11),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "layers",
-                kind: Kind::Message(12),
+                kind: Kind::Message(11),
                 most: most::STREAM_POINTS_REQUEST_LAYERS,
             },
             Field {
@@ -78,24 +75,12 @@ pub(super) static SHAPES: [Shape; 45] = [
         ],
     },
     Shape {
-        bytes: size_of::<proto::CountPointsRequest>(),
-        is_field: false,
-        fields: &[
-            Field {
-                number: 1,
-                name: "query",
-                kind: Kind::Message(0),
-                most: most::ONCE,
-            },
-        ],
-    },
-    Shape {
         bytes: size_of::<proto::SplitPointsRequest>(),
         is_field: false,
         fields: &[
             Field {
                 number: 1,
-                name: "query",
+                name: "request",
                 kind: Kind::Message(0),
                 most: most::ONCE,
             },
@@ -114,7 +99,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 2,
                 name: "set",
-                kind: Kind::Message(11),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
         ],
@@ -126,13 +111,13 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "at",
-                kind: Kind::Message(13),
+                kind: Kind::Message(12),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "set",
-                kind: Kind::Message(11),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
         ],
@@ -213,55 +198,55 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "bbox",
-                kind: Kind::Message(14),
+                kind: Kind::Message(13),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "circle",
-                kind: Kind::Message(15),
+                kind: Kind::Message(14),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(16),
+                kind: Kind::Message(15),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "chunk",
-                kind: Kind::Message(17),
+                kind: Kind::Message(16),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "combined",
-                kind: Kind::Message(18),
+                kind: Kind::Message(17),
                 most: most::ONCE,
             },
             Field {
                 number: 6,
                 name: "cuboid",
-                kind: Kind::Message(19),
+                kind: Kind::Message(18),
                 most: most::ONCE,
             },
             Field {
                 number: 7,
                 name: "ball",
-                kind: Kind::Message(20),
+                kind: Kind::Message(19),
                 most: most::ONCE,
             },
             Field {
                 number: 8,
                 name: "prism",
-                kind: Kind::Message(21),
+                kind: Kind::Message(20),
                 most: most::ONCE,
             },
             Field {
                 number: 9,
                 name: "cube",
-                kind: Kind::Message(22),
+                kind: Kind::Message(21),
                 most: most::ONCE,
             },
         ],
@@ -303,19 +288,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 13,
                 name: "scale_range",
-                kind: Kind::Message(23),
+                kind: Kind::Message(22),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "variants",
-                kind: Kind::Message(24),
+                kind: Kind::Message(23),
                 most: most::POINT_SET_VARIANTS,
             },
             Field {
                 number: 15,
                 name: "field",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::ONCE,
             },
             Field {
@@ -333,25 +318,25 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 18,
                 name: "scale_ranges",
-                kind: Kind::Message(26),
+                kind: Kind::Message(25),
                 most: most::POINT_SET_SCALE_RANGES,
             },
             Field {
                 number: 20,
                 name: "variant_fields",
-                kind: Kind::Message(27),
+                kind: Kind::Message(26),
                 most: most::POINT_SET_VARIANT_FIELDS,
             },
             Field {
                 number: 21,
                 name: "terrain",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::ONCE,
             },
             Field {
                 number: 22,
                 name: "heights",
-                kind: Kind::Message(28),
+                kind: Kind::Message(27),
                 most: most::ONCE,
             },
             Field {
@@ -375,19 +360,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 2,
                 name: "region",
-                kind: Kind::Message(10),
+                kind: Kind::Message(9),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "clear_of",
-                kind: Kind::Message(29),
+                kind: Kind::Message(28),
                 most: most::LAYER_CLEAR_OF,
             },
             Field {
                 number: 4,
                 name: "set",
-                kind: Kind::Message(11),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
         ],
@@ -409,7 +394,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(13),
+                kind: Kind::Message(12),
                 most: most::ONCE,
             },
         ],
@@ -421,7 +406,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "polygons",
-                kind: Kind::Message(30),
+                kind: Kind::Message(29),
                 most: most::POLYGONS_POLYGONS,
             },
         ],
@@ -438,13 +423,13 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "include",
-                kind: Kind::Message(10),
+                kind: Kind::Message(9),
                 most: most::COMBINED_INCLUDE,
             },
             Field {
                 number: 2,
                 name: "exclude",
-                kind: Kind::Message(10),
+                kind: Kind::Message(9),
                 most: most::COMBINED_EXCLUDE,
             },
         ],
@@ -461,7 +446,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(13),
+                kind: Kind::Message(12),
                 most: most::ONCE,
             },
         ],
@@ -473,7 +458,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "base",
-                kind: Kind::Message(16),
+                kind: Kind::Message(15),
                 most: most::ONCE,
             },
         ],
@@ -513,73 +498,73 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 3,
                 name: "ramp",
-                kind: Kind::Message(31),
+                kind: Kind::Message(30),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "radial",
-                kind: Kind::Message(32),
+                kind: Kind::Message(31),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "distance",
-                kind: Kind::Message(33),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
                 number: 6,
                 name: "noise",
-                kind: Kind::Message(34),
+                kind: Kind::Message(33),
                 most: most::ONCE,
             },
             Field {
                 number: 7,
                 name: "raster",
-                kind: Kind::Message(35),
+                kind: Kind::Message(34),
                 most: most::ONCE,
             },
             Field {
                 number: 8,
                 name: "height",
-                kind: Kind::Message(36),
+                kind: Kind::Message(35),
                 most: most::ONCE,
             },
             Field {
                 number: 9,
                 name: "slope",
-                kind: Kind::Message(37),
+                kind: Kind::Message(36),
                 most: most::ONCE,
             },
             Field {
                 number: 10,
                 name: "multiply",
-                kind: Kind::Message(38),
+                kind: Kind::Message(37),
                 most: most::ONCE,
             },
             Field {
                 number: 11,
                 name: "min",
-                kind: Kind::Message(38),
+                kind: Kind::Message(37),
                 most: most::ONCE,
             },
             Field {
                 number: 12,
                 name: "max",
-                kind: Kind::Message(38),
+                kind: Kind::Message(37),
                 most: most::ONCE,
             },
             Field {
                 number: 13,
                 name: "invert",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "curve",
-                kind: Kind::Message(39),
+                kind: Kind::Message(38),
                 most: most::ONCE,
             },
         ],
@@ -597,7 +582,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(23),
+                kind: Kind::Message(22),
                 most: most::ONCE,
             },
         ],
@@ -615,7 +600,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::ONCE,
             },
         ],
@@ -644,7 +629,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "rings",
-                kind: Kind::Message(40),
+                kind: Kind::Message(39),
                 most: most::POLYGON_RINGS,
             },
         ],
@@ -656,19 +641,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "from",
-                kind: Kind::Message(41),
+                kind: Kind::Message(40),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "to",
-                kind: Kind::Message(41),
+                kind: Kind::Message(40),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -680,19 +665,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(41),
+                kind: Kind::Message(40),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "radii",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -704,31 +689,31 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "points",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::FIELD_DISTANCE_POINTS,
             },
             Field {
                 number: 2,
                 name: "lines",
-                kind: Kind::Message(43),
+                kind: Kind::Message(42),
                 most: most::FIELD_DISTANCE_LINES,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(43),
+                kind: Kind::Message(42),
                 most: most::FIELD_DISTANCE_POLYGONS,
             },
             Field {
                 number: 4,
                 name: "distances",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "shares",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -740,7 +725,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 4,
                 name: "range",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -764,7 +749,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 5,
                 name: "bbox",
-                kind: Kind::Message(44),
+                kind: Kind::Message(43),
                 most: most::ONCE,
             },
         ],
@@ -776,19 +761,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(35),
+                kind: Kind::Message(34),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "heights",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -800,19 +785,19 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(35),
+                kind: Kind::Message(34),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "slopes",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -824,7 +809,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "fields",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::FIELD_PARTS_FIELDS,
             },
         ],
@@ -836,13 +821,13 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "of",
-                kind: Kind::Message(25),
+                kind: Kind::Message(24),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "points",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::FIELD_CURVE_POINTS,
             },
         ],
@@ -854,7 +839,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "positions",
-                kind: Kind::Message(13),
+                kind: Kind::Message(12),
                 most: most::RING_POSITIONS,
             },
         ],
@@ -876,7 +861,7 @@ pub(super) static SHAPES: [Shape; 45] = [
             Field {
                 number: 1,
                 name: "vertices",
-                kind: Kind::Message(42),
+                kind: Kind::Message(41),
                 most: most::FIELD_LINE_VERTICES,
             },
         ],

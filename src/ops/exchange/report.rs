@@ -164,6 +164,7 @@ impl Report {
 
     fn broken(&self) -> Option<Broken> {
         match self.stand {
+            Stand::Open if self.metrics.ends.is_cancelled() => Some(Broken::Server),
             Stand::Open => Some(Broken::Client),
             Stand::BrokenOff(by) => Some(by),
             // A call says with its last word that it is not complete.

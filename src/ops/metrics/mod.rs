@@ -16,6 +16,7 @@ use prometheus::{
     register_int_counter_with_registry as counter, register_int_gauge_vec_with_registry as gauges,
 };
 use strew_error::Kind;
+use tokio_util::sync::CancellationToken;
 
 pub(super) use scrape::{endpoint, resident};
 
@@ -89,6 +90,8 @@ pub struct Metrics {
     formats: Arc<RwLock<Vec<Arc<OfFormat>>>>,
     rejected: IntCounterVec,
     broken: IntCounterVec,
+    /// Whether the daemon breaks off what is left: from then on no end is the client's.
+    pub(super) ends: CancellationToken,
     first_byte: HistogramVec,
     whole: HistogramVec,
     pub(super) reloads: IntCounterVec,
@@ -131,6 +134,7 @@ impl Default for Metrics {
                 &by_format,
             ),
             formats: Arc::default(),
+            ends: CancellationToken::new(),
             rejected: counters(
                 "strew_rejected_total",
                 "Requests refused, by the kind of error",

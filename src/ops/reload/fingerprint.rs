@@ -25,7 +25,7 @@ impl Watched {
         Self {
             config: Arc::new(config.clone()),
             files: (files.chain(config.tls.files()).map(Into::into))
-                .chain(config.files.iter().cloned())
+                .chain(config.layers.files.iter().cloned())
                 .collect(),
         }
     }
@@ -52,8 +52,9 @@ impl Watched {
         tables.retain(|path| path.extension().is_some_and(|e| e == "strew"));
         tables.sort();
         // A reload may have added fields, whose files are watched from then on.
-        let now = self.config.read_names();
-        let fields = field::stamp(&now.as_ref().unwrap_or(&self.config).fields);
+        let now = self.config.read_again();
+        let now = now.as_ref().map_or(&*self.config, |(now, _)| now);
+        let fields = field::stamp(&now.fields);
         let worlds = field::stamp_of(self.config.worlds.folder());
         let except = field::stamp_of(self.config.except.folder());
         Fingerprint::of(&tables, &self.files, &[fields, worlds, except])
@@ -125,7 +126,7 @@ mod tests {
         let mut config = layers
             .and_then(strew_config::Layers::finish)
             .expect("valid");
-        config.files = vec![folder.join("keys.toml")];
+        config.layers.files = vec![folder.join("keys.toml")];
         let watched = Watched::of(&config);
         let look = || watched.look();
         let none = look();

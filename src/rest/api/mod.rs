@@ -174,16 +174,12 @@ pub(super) fn either<T>(dimension: Dimension, [plane, space]: [T; 2]) -> T {
 }
 
 impl Endpoint {
-    pub fn only<S, T>(
+    pub fn only<S: Clone + Send + Sync + 'static, T: 'static>(
         path: &'static str,
         state: S,
         operation: Operation,
         handle: impl Handler<T, S>,
-    ) -> Self
-    where
-        S: Clone + Send + Sync + 'static,
-        T: 'static,
-    {
+    ) -> Self {
         let endpoint = Self {
             path,
             operations: vec![],
@@ -193,16 +189,12 @@ impl Endpoint {
         endpoint.with(state, operation, handle)
     }
 
-    pub fn with<S, T>(
+    pub fn with<S: Clone + Send + Sync + 'static, T: 'static>(
         mut self,
         state: S,
         mut operation: Operation,
         handle: impl Handler<T, S>,
-    ) -> Self
-    where
-        S: Clone + Send + Sync + 'static,
-        T: 'static,
-    {
+    ) -> Self {
         let method = MethodFilter::try_from(operation.method.clone()).expect("a usual method");
         self.answers = self.answers.merge(on(method, handle).with_state(state));
         if operation.example.is_empty() {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use strew_catalog::field::Document;
 use strew_query::{
     Group, MOST_FEATURES, NAME, Parameter, RegionSchema, Shape, TITLE, VolumeSchema, groups,
-    of as parameters_of,
+    integer, of as parameters_of,
     parameters::{COUNT, EXCEPT, LOD, ONLY, PERIODIC, SEED, WORLD},
     schema,
 };
@@ -133,9 +133,7 @@ pub(super) fn as_text(shape: Shape) -> Value {
         Shape::Field => NAME.into(),
         Shape::Fields => list(&format!("{NAME}:{NAME}")),
         Shape::Switch => return json!({ "type": "string", "enum": ["on", "off"] }),
-        Shape::Integer { min, max } => {
-            return json!({ "type": "integer", "minimum": min, "maximum": max });
-        }
+        Shape::Integer { min, max } => return integer(min.into(), max),
         other => return schema(other),
     };
     json!({ "type": "string", "pattern": format!("^{pattern}$") })

@@ -9,7 +9,7 @@ mod single;
 use serde::Serialize;
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, Encoding, ResolvedSet, SplitPointsRequest, StreamPointsRequest,
+    Encoding, ResolvedSet, SplitPointsRequest, StreamPointsRequest,
     point_service_client::PointServiceClient, point_set::Amount,
 };
 use strew_encode::Output;
@@ -253,11 +253,8 @@ async fn messages_have_the_points_and_echoes_of_rest() {
                 ["delta_min", "delta_avg"].map(|name| normal(&tables[i][name]))
             );
         }
-        let count = CountPointsRequest {
-            query: Some(request),
-        };
         let counted = client
-            .count_points(count)
+            .count_points(request)
             .await
             .expect("a count")
             .into_inner();
@@ -395,7 +392,7 @@ async fn pages_parts_and_broken_streams_make_the_whole() {
         assert_eq!(&paged[..expected.len()], &expected[..], "{body}");
         // Parts.
         let split = SplitPointsRequest {
-            query: Some(request),
+            request: Some(request),
             parts: 7,
         };
         let split = client

@@ -1,9 +1,7 @@
 //! Single points, neighbors and large counts: the same by REST, gRPC and the command line.
 
 use serde_json::{Map, Value, json};
-use strew::grpc::proto::{
-    CountPointsRequest, FindNearestRequest, GetPointRequest, Point, PointSet, Position, value,
-};
+use strew::grpc::proto::{FindNearestRequest, GetPointRequest, Point, PointSet, Position, value};
 use tonic_types::StatusExt as _;
 
 use super::{assert_echoed, client, daemon};
@@ -181,11 +179,8 @@ async fn counts_are_exact_beyond_64_bits() {
     let mut client = client(&daemon).await;
     for side in [1e3, 1e9, 1e12] {
         let body = json!({ "region": { "bbox": [0, 0, side, side] }, "spacing": 1 });
-        let request = CountPointsRequest {
-            query: Some(query(&body, 0)),
-        };
         let answer = client
-            .count_points(request)
+            .count_points(query(&body, 0))
             .await
             .expect("a count")
             .into_inner();

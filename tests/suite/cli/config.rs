@@ -150,10 +150,8 @@ fn errors_name_the_setting_and_its_source() {
             ],
         ),
         ("[log]\nfilter = \"info,=x=\"", &["log.filter"]),
-        (
-            "[shutdown]\ndrain_seconds = nan",
-            &["shutdown.drain_seconds"],
-        ),
+        ("[log]\nfilter = \"warning\"", &["log.filter", "warning"]),
+        ("[shutdown]\ndrain_seconds = nan", &["shutdown.drain"]),
         ("[limits\n", &["TOML", "line 1"]),
     ];
     for (text, expected) in files {

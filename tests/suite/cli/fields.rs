@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::support::{
-    command::{Shell, errors, run},
+    command::{Shell, assert_says, errors, run},
     daemon::Daemon,
     fields::{folder, left_half, png},
 };
@@ -206,11 +206,7 @@ fn what_cannot_be_done_is_told_before_the_work() {
     fs::create_dir(shell.path("d.svg")).expect("a folder");
     let output = shell.run("stipple shades.png -n 9 -o d.svg", "");
     assert_eq!(output.status.code(), Some(1));
-    assert!(
-        errors(&output).contains("it is a folder"),
-        "{}",
-        errors(&output)
-    );
+    assert_says(&output, "it is a folder");
     shell.write("white.png", png([4, 4], |_, _| 255));
     shell.write("other.gif", "GIF89a");
     for (flags, words) in [

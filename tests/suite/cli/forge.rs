@@ -9,7 +9,10 @@ use std::{
 use strew_forge::{Checkpoint, read_table};
 use strew_testkit::{process::Running, wait::until};
 
-use crate::support::{command::errors, daemon::strew};
+use crate::support::{
+    command::{assert_says, errors},
+    daemon::strew,
+};
 
 /// A small job: it takes seconds, and its table is never accepted.
 fn forge(folder: &Path, flags: &[&str]) -> Command {
@@ -37,7 +40,7 @@ fn killed_work_resumes_to_the_same_table() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program runs");
-    until("a checkpoint is kept", || kept.exists().then_some(()));
+    until("a checkpoint is kept", || kept.exists());
     child.kill().expect("it still runs");
     let status = child.wait().expect("a child");
     assert!(!status.success() && !folder.join("t.strew").exists());
@@ -70,7 +73,7 @@ fn an_interrupt_keeps_a_checkpoint() {
     let kept = folder.join("t.strew.checkpoint");
     let endless = ["--steps", "1000000", "--checkpoint-every", "0"];
     let child = Running::start(forge(folder, &endless).stderr(Stdio::piped()));
-    until("a checkpoint is kept", || kept.exists().then_some(()));
+    until("a checkpoint is kept", || kept.exists());
     child.signal("INT");
     let output = child.end();
     assert_eq!(output.status.code(), Some(130));
@@ -81,7 +84,7 @@ fn an_interrupt_keeps_a_checkpoint() {
     fs::write(&kept, "strewck3 and no more").expect("writable");
     let refused = run(folder, &["--steps", "2"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(errors(&refused).contains("damaged"), "{}", errors(&refused));
+    assert_says(&refused, "damaged");
     let anew = run(folder, &["--steps", "2", "--restart", "--keep-rejected"]);
     assert!(anew.status.success(), "{}", errors(&anew));
     assert!(!kept.exists());
@@ -101,11 +104,7 @@ fn a_rejected_table_can_be_kept_without_repeating_the_work() {
     assert!(!folder.join("t.strew").exists());
     let kept = run(folder, &["--steps", "5", "--keep-rejected"]);
     assert!(kept.status.success());
-    assert!(
-        errors(&kept).contains("resuming at step 5 of 5"),
-        "{}",
-        errors(&kept)
-    );
+    assert_says(&kept, "resuming at step 5 of 5");
     // The checkpoint of a rejected job does not block other jobs.
     assert_eq!(
         run(folder, &["--steps", "5", "--force"]).status.code(),
@@ -113,11 +112,7 @@ fn a_rejected_table_can_be_kept_without_repeating_the_work() {
     );
     let other = run(folder, &["--steps", "6", "--force"]);
     assert_eq!(other.status.code(), Some(1));
-    assert!(
-        errors(&other).contains("beginning anew"),
-        "{}",
-        errors(&other)
-    );
+    assert_says(&other, "beginning anew");
 }
 
 #[test]
@@ -148,11 +143,7 @@ fn an_impossible_target_is_announced_and_reported_as_missed() {
     assert!(text.contains("--keep-rejected") && !folder.join("t.strew").exists());
     let kept = run(folder, &[&job[..], &["--keep-rejected"]].concat());
     assert!(kept.status.success());
-    assert!(
-        errors(&kept).contains("the target is missed"),
-        "{}",
-        errors(&kept)
-    );
+    assert_says(&kept, "the target is missed");
 }
 
 #[test]
@@ -211,7 +202,7 @@ fn bad_curves_are_refused_before_any_work() {
     fs::write(folder.join("curve"), "0 1\n").expect("writable");
     let output = run(folder, &flags);
     assert_eq!(output.status.code(), Some(2));
-    assert!(errors(&output).contains("a-z"), "{}", errors(&output));
+    assert_says(&output, "a-z");
     assert_eq!(fs::read_dir(folder).expect("a folder").count(), 1);
 }
 
@@ -249,7 +240,7 @@ fn a_forge_that_is_killed_at_any_moment_leaves_whole_files() {
                 }
             }
             let is_over = child.try_wait().expect("a child").is_some();
-            (is_over || reads >= most).then_some(())
+            is_over || reads >= most
         });
         child.kill().expect("killed, or over");
         child.wait().expect("a child");

@@ -85,7 +85,6 @@ probe --url https://x --ca /nowhere | --ca /nowhere: it cannot be read
 export --spacing=1 --bbox=0,0,64,64 -o w | use --chunk
 export --spacing=1 --bbox=0,0,64,64 -o w --chunk=0 | --chunk 0: out of range
 export --spacing=1 --bbox=0,0,64,64 --chunk=16 | use --output DIR, or --dry-run
-export --spacing=1 --bbox=0,0,64,64 -o w --chunk=16 --format=parquet | --format parquet
 export --spacing=1 --bbox=0,0,64,64 -o w --chunk=16 --compress=none,gz | --compress none stands alone
 export --spacing=1 --bbox=0,0,64,64 -o w/W.ZIP --chunk=16 | not a zip file; allowed: --output w/W, and after it `zip -r w/W.ZIP w/W`
 export --spacing=1 --bbox=0,0,64,64 -o w --chunk=1e-9 | chunks; allowed

@@ -10,7 +10,10 @@ use strew_core::Table;
 use strew_forge::{labels, read_table, write_table};
 use strew_testkit::{process::Running, wait::until};
 
-use crate::support::{command::errors, daemon::strew};
+use crate::support::{
+    command::{assert_says, errors},
+    daemon::strew,
+};
 
 /// A folder with a small table, whose mixes are never accepted.
 fn folder() -> (tempfile::TempDir, Table) {
@@ -56,7 +59,7 @@ fn labels_are_those_of_the_library_whatever_the_order_of_shares() {
     // An existing file is left alone.
     let again = run(folder, &flags);
     assert_eq!(again.status.code(), Some(2));
-    assert!(errors(&again).contains("--force"), "{}", errors(&again));
+    assert_says(&again, "--force");
 }
 
 #[test]

@@ -25,17 +25,28 @@ fn names(folder: &Path) -> Vec<String> {
 
 #[test]
 fn signals_leave_no_file() {
-    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+    let (points, large) = (
+        "--bbox=0,0,4e4,4e4 --spacing=1",
+        "--bbox=0,0,1999,1999 --spacing=1",
+    );
+    for (signal, code, line) in [
+        ("INT", 130, format!("sample -q {points} -o=x.csv")),
+        ("TERM", 143, format!("sample -q {points} -o=x.csv")),
+        ("HUP", 129, format!("sample -q {points} -o=x.csv")),
+        ("INT", 130, "mask --size=1024 -o=x.npy".into()),
+        ("INT", 130, format!("measure {large} -o=x.json")),
+    ] {
         let folder = tempfile::tempdir().expect("a folder");
         let mut command = strew();
-        command.args("sample -q --bbox=0,0,4e4,4e4 --spacing=1 -o=x.csv".split(' '));
+        command.args(line.split(' '));
         let child = Running::start(command.current_dir(folder.path()));
+        let partial = |name: &String| name.ends_with(".partial");
         wait::until("a file is begun", || {
-            (names(folder.path()) == ["x.csv.partial"]).then_some(())
+            names(folder.path()).iter().any(partial)
         });
         child.signal(signal);
-        assert_eq!(child.end().status.code(), Some(code), "{signal}");
-        assert_eq!(names(folder.path()), Vec::<String>::new(), "{signal}");
+        assert_eq!(child.end().status.code(), Some(code), "{line}");
+        assert_eq!(names(folder.path()), Vec::<String>::new(), "{line}");
     }
 }
 

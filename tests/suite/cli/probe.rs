@@ -138,9 +138,7 @@ fn the_probe_speaks_tls() {
     }
     daemon.terminate();
     until("it is not ready", || {
-        health_check()
-            .contains("not ready: status 503")
-            .then_some(())
+        health_check().contains("not ready: status 503")
     });
 }
 

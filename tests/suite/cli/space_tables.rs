@@ -9,7 +9,10 @@ use std::{
 use serde_json::Value;
 use strew_testkit::{process::Running, wait::until};
 
-use crate::support::{command::errors, daemon::strew};
+use crate::support::{
+    command::{assert_says, errors},
+    daemon::strew,
+};
 
 /// A small job: it takes seconds, and its table is never accepted.
 fn forge(folder: &Path, flags: &[&str]) -> Command {
@@ -47,7 +50,7 @@ fn interrupted_work_resumes_to_the_same_table() {
         "0",
     ];
     let child = Running::start(forge(folder, &often).stderr(Stdio::piped()));
-    until("a checkpoint is kept", || kept.exists().then_some(()));
+    until("a checkpoint is kept", || kept.exists());
     child.signal("INT");
     let stopped = child.end();
     assert_eq!(stopped.status.code(), Some(130), "{}", errors(&stopped));
@@ -61,11 +64,7 @@ fn interrupted_work_resumes_to_the_same_table() {
     ] {
         let refused = run(folder, other);
         assert_eq!(refused.status.code(), Some(2));
-        assert!(
-            errors(&refused).contains("--restart"),
-            "{}",
-            errors(&refused)
-        );
+        assert_says(&refused, "--restart");
     }
     let resumed = forge(folder, &flags).output().expect("it runs");
     assert!(resumed.status.success(), "{}", errors(&resumed));
@@ -81,11 +80,7 @@ fn a_table_in_space_is_shown_and_measured_and_refused_elsewhere() {
     let folder = folder.path();
     let rejected = forge(folder, &["--steps", "3"]).output().expect("it runs");
     assert_eq!(rejected.status.code(), Some(1));
-    assert!(
-        errors(&rejected).contains("low_power"),
-        "{}",
-        errors(&rejected)
-    );
+    assert_says(&rejected, "low_power");
     let kept = forge(folder, &["--steps", "3", "--keep-rejected"]);
     assert!({ kept }.output().expect("it runs").status.success());
 
@@ -208,10 +203,6 @@ fn a_table_in_space_is_shown_and_measured_and_refused_elsewhere() {
     ] {
         let refused = run(folder, &args);
         assert_eq!(refused.status.code(), Some(1), "{args:?}");
-        assert!(
-            errors(&refused).contains("bad.strew"),
-            "{}",
-            errors(&refused)
-        );
+        assert_says(&refused, "bad.strew");
     }
 }

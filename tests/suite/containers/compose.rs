@@ -121,9 +121,7 @@ fn the_file_serves_while_replicas_are_killed_and_replaced() {
     let proxy: SocketAddr = "127.0.0.1:8080".parse().expect("an address");
     until("the proxy has found a replica", || {
         let answer = http1::try_open(proxy, "GET", "/readyz", &[], None);
-        answer
-            .is_ok_and(|answer| answer.status == 200)
-            .then_some(())
+        answer.is_ok_and(|answer| answer.status == 200)
     });
     assert_eq!(project.replicas().len(), 3);
     let prometheus = "127.0.0.1:9090".parse().expect("an address");
@@ -140,7 +138,7 @@ fn the_file_serves_while_replicas_are_killed_and_replaced() {
         // By the system: the engine would not start a container again that its user kills.
         process::signal(replica.pid(), "KILL");
         until("the engine has started it again", || {
-            (replica.inspect("{{.RestartCount}} {{.State.Status}}") == "1 running").then_some(())
+            replica.inspect("{{.RestartCount}} {{.State.Status}}") == "1 running"
         });
         replica.until_healthy();
         until_used(&replica);
@@ -188,7 +186,7 @@ fn tables_are_exchanged(project: &Project, proxy: SocketAddr, replicas: &[Contai
         look();
         until("a replica serves the new table", || {
             look();
-            (replica.get(POINTS).header("strew-table") != old).then_some(())
+            replica.get(POINTS).header("strew-table") != old
         });
     }
     assert_eq!(look(), 409);

@@ -99,7 +99,7 @@ impl Container {
         until("a container is healthy", || {
             let state = self.inspect("{{.State.Status}} {{.State.Health.Status}}");
             assert!(state.starts_with("running"), "{state}");
-            state.ends_with(" healthy").then_some(())
+            state.ends_with(" healthy")
         });
     }
 

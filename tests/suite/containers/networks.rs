@@ -137,9 +137,7 @@ impl Network {
         let proxy = Container::run(&[&member[..], &proxy].concat());
         until("the proxy has found a replica", || {
             let answer = http1::try_open(proxy.address(), "GET", "/readyz", &[], None);
-            answer
-                .is_ok_and(|answer| answer.status == 200)
-                .then_some(())
+            answer.is_ok_and(|answer| answer.status == 200)
         });
         Self {
             replicas,
@@ -226,7 +224,7 @@ fn a_connection_whose_other_end_is_gone_is_given_up_and_its_stream_continued() {
     });
     assert!(ended.is_err() && !reader.is_whole(), "{ended:?}");
     until("the daemon gives the stream up", || {
-        (replicas[0].get("/readyz").json()["streams"] == 0).then_some(())
+        replicas[0].get("/readyz").json()["streams"] == 0
     });
     reader
         .read(replicas[1].address(), |_, _| {})

@@ -46,9 +46,7 @@ impl Stack {
     /// Waits until three replicas of an image run, and none else.
     fn until_all_run(&self, image: &str) {
         let wanted = vec![format!("{image} Running"); 3];
-        until("all replicas run", || {
-            (self.replicas() == wanted).then_some(())
-        });
+        until("all replicas run", || self.replicas() == wanted);
     }
 }
 
@@ -73,9 +71,7 @@ fn updates_and_rollbacks_fail_no_request() {
     let proxy: SocketAddr = "127.0.0.1:8080".parse().expect("an address");
     until("the proxy has found a replica", || {
         let answer = http1::try_open(proxy, "GET", "/readyz", &[], None);
-        answer
-            .is_ok_and(|answer| answer.status == 200)
-            .then_some(())
+        answer.is_ok_and(|answer| answer.status == 200)
     });
     let update = [
         "service",
@@ -109,7 +105,7 @@ fn updates_and_rollbacks_fail_no_request() {
         ])
     };
     until("the update is rolled back", || {
-        (state() == "rollback_completed").then_some(())
+        state() == "rollback_completed"
     });
     stack.until_all_run(IMAGE);
     load.finish("an update that cannot work");

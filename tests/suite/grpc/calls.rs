@@ -10,7 +10,7 @@ use tonic_types::StatusExt as _;
 
 use crate::support::{
     daemon::{Daemon, PROFILE, table},
-    grpc::{LONG, square},
+    grpc::{LONG, broken_off, square},
 };
 
 #[tokio::test(flavor = "multi_thread")]
@@ -26,13 +26,7 @@ async fn a_stream_stops_at_its_deadline() {
         .await
         .expect("in time")
         .into_inner();
-    let status = loop {
-        match stream.message().await {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("the stream looks complete"),
-            Err(status) => break status,
-        }
-    };
+    let status = broken_off(&mut stream).await;
     assert_eq!(status.code(), Code::DeadlineExceeded, "{status:?}");
     assert!(status.message().contains("not complete"), "{status:?}");
     let info = status.get_details_error_info().expect("details");

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, ListFieldsRequest, point_service_client::PointServiceClient,
+    ListFieldsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
 };
 
 use crate::support::{
@@ -44,8 +44,8 @@ async fn named_and_described_fields_are_those_of_rest() {
         };
         let (field, document) = (read(row[0]), read(row[1]));
         let set = json!({ "spacing": 1, "seed": 7, "field": field });
-        let query = json!({ "query": { "region": region(place), "set": set } });
-        let answer = client.count_points(message::<CountPointsRequest>(&query));
+        let request = json!({ "region": region(place), "set": set });
+        let answer = client.count_points(message::<StreamPointsRequest>(&request));
         let answer = answer.await.expect("a count").into_inner();
         let body = json!({ "region": place, "spacing": 1, "seed": 7, "field": document });
         let rest = daemon.post(path, &body).json();

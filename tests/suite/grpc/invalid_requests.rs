@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, FindNearestRequest, GetMaskRequest, GetPointRequest, ListPeriodsRequest,
-    SplitPointsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
+    FindNearestRequest, GetMaskRequest, GetPointRequest, ListPeriodsRequest, SplitPointsRequest,
+    StreamPointsRequest, point_service_client::PointServiceClient,
 };
 use tonic::{Code, Status, transport::Channel};
 use tonic_types::StatusExt as _;
@@ -82,10 +82,10 @@ const QUERIES: &str = r#"
 
 /// Other calls, their requests, the fields at fault, and words of the message.
 const CALLS: &str = r#"
-CountPoints | {} | query | missing
-SplitPoints | {"parts": 2} | query | missing
-SplitPoints | {"parts": 0, "query": {"region": {"circle": {"radius": 9}}, "set": {"spacing": 1}}} | parts | 1 to 10000
-SplitPoints | {"parts": 10001, "query": {"region": {"circle": {"radius": 9}}, "set": {"spacing": 1}}} | parts | 1 to 10000
+CountPoints | {} | region, set.spacing | missing
+SplitPoints | {"parts": 2} | request | missing
+SplitPoints | {"parts": 0, "request": {"region": {"circle": {"radius": 9}}, "set": {"spacing": 1}}} | parts | 1 to 10000
+SplitPoints | {"parts": 10001, "request": {"region": {"circle": {"radius": 9}}, "set": {"spacing": 1}}} | parts | 1 to 10000
 FindNearest | {} | at, set.spacing
 FindNearest | {"set": {"spacing": 1}} | at
 FindNearest | {"at": {"x": "NaN"}, "set": {"spacing": 1}} | at
@@ -153,20 +153,19 @@ async fn faults_of_queries_have_paths() {
         let fields: Vec<&str> = fields.split(", ").collect();
         let within: Vec<String> = fields
             .iter()
-            .map(|field| format!("query.{field}"))
+            .map(|field| format!("request.{field}"))
             .collect();
         let within: Vec<&str> = within.iter().map(String::as_str).collect();
         let refused =
             |status: Option<Status>| status.unwrap_or_else(|| panic!("accepted: {request:?}"));
         let status = refused(client.stream_points(request.clone()).await.err());
         assert_faults(&status, &fields, &texts);
-        let query = Some(request.clone());
-        let count = CountPointsRequest {
-            query: query.clone(),
+        let status = refused(client.count_points(request.clone()).await.err());
+        assert_faults(&status, &fields, &texts);
+        let split = SplitPointsRequest {
+            request: Some(request.clone()),
+            parts: 2,
         };
-        let status = refused(client.count_points(count).await.err());
-        assert_faults(&status, &within, &texts);
-        let split = SplitPointsRequest { query, parts: 2 };
         let status = refused(client.split_points(split).await.err());
         assert_faults(&status, &within, &texts);
     }
@@ -177,7 +176,7 @@ async fn faults_of_queries_have_paths() {
 async fn refused(client: &mut PointServiceClient<Channel>, call: &str, request: &Value) -> Status {
     let status = match call {
         "CountPoints" => client
-            .count_points(message::<CountPointsRequest>(request))
+            .count_points(message::<StreamPointsRequest>(request))
             .await
             .err(),
         "SplitPoints" => client
@@ -217,8 +216,8 @@ async fn fields_besides_the_query_are_checked_too() {
     // Each part would repeat the region.
     let corners: Value = (0..1000).map(|i| json!({ "x": i, "y": i * i })).collect();
     let polygon = json!({ "polygons": [{ "rings": [{ "positions": corners }] }] });
-    let query = json!({ "region": { "polygons": polygon }, "set": { "spacing": 1 } });
-    let request = json!({ "query": query, "parts": 10_000 });
+    let request = json!({ "region": { "polygons": polygon }, "set": { "spacing": 1 } });
+    let request = json!({ "request": request, "parts": 10_000 });
     let status = refused(&mut client, "SplitPoints", &request).await;
     assert_faults(&status, &["parts"], &["1 to 2"]);
 }
@@ -227,8 +226,8 @@ async fn fields_besides_the_query_are_checked_too() {
 async fn too_many_rows_are_a_quota_failure() {
     let daemon = Daemon::start(&["limits.max_rows=1000"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
-    let query = json!({ "region": { "circle": { "radius": 1000 } }, "set": { "spacing": 1 } });
-    let status = refused(&mut client, "CountPoints", &json!({ "query": query })).await;
+    let request = json!({ "region": { "circle": { "radius": 1000 } }, "set": { "spacing": 1 } });
+    let status = refused(&mut client, "CountPoints", &request).await;
     assert_eq!(status.code(), Code::ResourceExhausted, "{status:?}");
     let details = status.get_error_details();
     let info = details.error_info().expect("details");

@@ -245,7 +245,7 @@ fn streams_that_their_deadline_cuts_are_counted_so() {
     let count =
         |name: &str, label: &str| sum(&samples(&daemon), name, &["protocol=\"grpc\"", label]);
     until("both are counted", || {
-        (count("strew_requests_total", "status=\"DEADLINE_EXCEEDED\"") == 2.0).then_some(())
+        count("strew_requests_total", "status=\"DEADLINE_EXCEEDED\"") == 2.0
     });
     assert_eq!(count("strew_requests_total", "status=\"2xx\""), 0.0);
     assert_eq!(count("strew_broken_total", "by=\"server\""), 0.0);

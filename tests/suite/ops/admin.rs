@@ -3,10 +3,11 @@
 use std::net::SocketAddr;
 
 use serde_json::{Value, json};
-use strew_testkit::{http1, tables::write};
+use strew_core::space;
+use strew_testkit::{daemon::Launcher, http1, tables::write};
 
 use crate::support::{
-    daemon::{Daemon, PROFILE, table},
+    daemon::{Daemon, PROFILE, PROGRAM, table, tables},
     keys::{entry, keys},
 };
 
@@ -77,12 +78,16 @@ fn an_admin_key_reloads_and_gets_a_report() {
     assert_eq!(third["refused"], Value::Array(vec![]));
 }
 
+/// The address of administrators in the line that announces it.
+fn admin(line: &str) -> SocketAddr {
+    let address = line.strip_prefix("administrators on http://");
+    address.expect(line).parse().expect("an address")
+}
+
 #[test]
 fn the_admin_address_needs_no_key() {
     let mut daemon = Daemon::start(&["admin.listen=127.0.0.1:0"]);
-    let line = daemon.line();
-    let admin = line.strip_prefix("administrators on http://").expect(&line);
-    let admin = admin.parse().expect("an address");
+    let admin = admin(&daemon.line());
     let done = reload(admin, &[]);
     assert_eq!(done.status, 200, "{}", done.text());
     assert_eq!(done.header("cache-control"), "no-store");
@@ -152,4 +157,86 @@ fn pages_whose_name_was_turned_to_this_machine_are_refused_by_every_port_and_pro
         http1::post(daemon.address(), "/v1/count", &other, count.as_bytes()).status,
         403
     );
+}
+
+#[test]
+fn the_start_readiness_and_a_reload_count_the_same_tables() {
+    let folder = tables();
+    let alpha = "sqrt(3)".parse().expect("a number");
+    let in_space = space::Table::undisplaced(alpha, 5, "test").expect("a table");
+    std::fs::write(folder.path().join("c.strew"), in_space.to_bytes()).expect("writable");
+    let launcher = Launcher::new(PROGRAM).tables(folder.path());
+    let launcher = launcher.settings(&["admin.listen=127.0.0.1:0", "reload.watch_seconds=0"]);
+    let daemon = launcher.start().expect("ready");
+    let admin = admin(&daemon.line());
+    let ready = || http1::get(admin, "/readyz", &[]).json()["tables"].clone();
+    let start = daemon.log_line("serving");
+    let tables = format!(" tables={} threads", ready());
+    assert!(start.contains(&tables), "{start}");
+    // The file is gone; then the folder, whose tables stay.
+    for gone in [folder.path().join("c.strew"), folder.path().to_owned()] {
+        let before = ready().as_u64().expect("a number");
+        std::fs::rename(&gone, gone.with_extension("gone")).expect("renamed");
+        let done = reload(admin, &[]).json();
+        let number = |list: &str| done[list].as_array().expect("a list").len() as u64;
+        assert_eq!(number("kept") + number("removed"), before);
+        assert_eq!([&done["tables"], &json!(number("kept"))], [&ready(); 2]);
+        let refused = number("refused");
+        daemon.log_line(&format!("refused={refused} tables={}", ready()));
+    }
+    std::fs::rename(folder.path().with_extension("gone"), folder.path()).expect("renamed");
+}
+
+#[test]
+fn a_reload_names_the_settings_that_wait_for_the_next_start() {
+    let folder = tables();
+    let file = folder.path().join("strew.toml");
+    let write = |text: &str| std::fs::write(&file, text).expect("writable");
+    write("limits.max_points = 5\nshutdown.drain_seconds = 9");
+    let settings = ["admin.listen=127.0.0.1:0", "limits.max_rows=99"];
+    let launcher = Launcher::new(PROGRAM).config(&file).settings(&settings);
+    let daemon = launcher.settings(&["reload.watch_seconds=0"]).start();
+    let daemon = daemon.expect("ready");
+    let (admin, public) = (admin(&daemon.line()), daemon.address());
+    let waiting = |words: &str| {
+        daemon.signal("HUP");
+        daemon.log_line(words);
+        let field = "/v1/count?bbox=0,0,1,1&spacing=1&field=glade";
+        (
+            reload(admin, &[]).json(),
+            http1::get(public, field, &[]).status,
+        )
+    };
+    write("limits.max_points = 6");
+    let (both, _) = waiting(
+        "limits.max_points and shutdown.drain_seconds changed; they take effect at the next",
+    );
+    assert_eq!(
+        both["at_next_start"],
+        json!(["limits.max_points", "shutdown.drain_seconds"])
+    );
+    // What a flag has set stays so, 9 is 9.0, and a field is taken at once.
+    let field = "[fields.glade]\nradial = { center = [0, 0], radii = [20, 50] }";
+    write(&format!(
+        "limits = {{ max_points = 6, max_rows = 7 }}\nshutdown.drain_seconds = 9.0\n{field}"
+    ));
+    let (one, status) = waiting("limits.max_points changed; it takes effect at the next start");
+    assert_eq!(
+        (&one["at_next_start"], status),
+        (&json!(["limits.max_points"]), 200)
+    );
+    // A file that cannot be read is named, and everything goes on as before.
+    for (text, words) in [
+        ("limits.max_points = 0", "max_points = 0; allowed: 1 to"),
+        ("[limits", "is not valid TOML"),
+    ] {
+        write(text);
+        let (refused, status) = waiting(words);
+        assert_eq!(
+            (sources(&refused["refused"]).join(" "), status),
+            ("strew.toml".into(), 200)
+        );
+    }
+    std::fs::remove_file(&file).expect("removable");
+    assert_eq!(waiting("cannot read the configuration file").1, 200);
 }

@@ -70,9 +70,7 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
             stream
         })
         .collect();
-    until("all are open", || {
-        (daemon.open_files() > count).then_some(())
-    });
+    until("all are open", || daemon.open_files() > count);
     let grown = daemon.memory_kib("VmRSS") - before;
     println!("{count} idle connections: {grown} KiB");
     assert!(grown < 24 * count as u64, "{grown} KiB for {count}");
@@ -82,9 +80,7 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
     }
     assert!(start.elapsed() < PATIENCE / 3);
     drop(idle);
-    until("all are closed", || {
-        (daemon.open_files() < 100).then_some(())
-    });
+    until("all are closed", || daemon.open_files() < 100);
     assert_eq!(daemon.get(SMALL).status, 200);
 }
 
@@ -120,7 +116,7 @@ fn bodies_take_their_length_and_leave_nothing_to_their_connections() {
     assert!(grown < 100 * 128, "{grown} KiB");
     let waiting = bodies(&daemon, 50, 1);
     until("all have come", || {
-        (daemon.cpu_ticks_over(Duration::from_millis(100)) == 0).then_some(())
+        daemon.cpu_ticks_over(Duration::from_millis(100)) == 0
     });
     let peak = daemon.memory_kib("VmHWM").saturating_sub(before);
     println!("50 bodies of 1 MB that wait: {peak} KiB at most");
@@ -231,11 +227,9 @@ async fn rapid_resets_cost_little_and_leave_nothing() {
     // The daemon stops computing for them.
     until("the daemon is idle", || {
         let ticks = daemon.cpu_ticks_over(Duration::from_millis(300));
-        (ticks <= 2).then_some(())
+        ticks <= 2
     });
-    until("no connection is left", || {
-        (daemon.open_files() < 100).then_some(())
-    });
+    until("no connection is left", || daemon.open_files() < 100);
 }
 
 #[test]

@@ -118,12 +118,7 @@ fn fields_of_one_address_do_not_push_out_those_of_another() {
     let mut last = String::new();
     for shade in 0..40 {
         let body = field(&gray([512, 512], shade)).to_string();
-        let mut waiting = sending::post(daemon.address(), "/v1/fields", &body).expect("sent");
-        let text = sending::answer(&mut waiting);
-        assert!(text.starts_with("HTTP/1.1 200"), "{text}");
-        let body = text.split("\r\n\r\n").nth(1).expect("a body");
-        let body: Value = serde_json::from_str(body).expect("JSON");
-        last = body["digest"].as_str().expect("a digest").into();
+        last = sending::digest(daemon.address(), "/v1/fields", &body);
     }
     let points = |field: &str| {
         let path = format!("/v1/points?bbox=0,0,9,9&spacing=1&profile=test&field={field}");

@@ -265,7 +265,7 @@ fn four_addresses_leave_places_for_a_fifth() {
         .collect();
     assert_eq!(daemon.get(SMALL).status, 200);
     drop(arriving);
-    until("they are gone", || (daemon.open_files() < 40).then_some(()));
+    until("they are gone", || daemon.open_files() < 40);
     let mut open = vec![];
     for from in addresses.iter().flat_map(|&from| [from; 4]) {
         let mut stream = attack::connect_from(from, daemon.address()).expect("connected");

@@ -108,9 +108,7 @@ fn rows_that_are_counted_one_by_one_are_charged() {
     let first = daemon.get(count);
     assert_eq!(first.status, 200, "{}", first.text());
     assert!((1000..19_000).contains(&left(&first)), "{}", left(&first));
-    until("the rate is exceeded", || {
-        (daemon.get(count).status == 429).then_some(())
-    });
+    until("the rate is exceeded", || daemon.get(count).status == 429);
     // A request that is refused for its size costs the request only.
     let before = left(&daemon.get("/v1/profiles"));
     let large = daemon.get("/v1/count?circle=0,0,1e8&density=1&profile=test");
@@ -121,11 +119,9 @@ fn rows_that_are_counted_one_by_one_are_charged() {
 #[test]
 fn points_come_back_with_time() {
     let daemon = Daemon::start(&["rate.points_per_second=2000", "rate.burst_points=450"]);
-    until("the rate is exceeded", || {
-        (daemon.get(POINTS).status == 429).then_some(())
-    });
+    until("the rate is exceeded", || daemon.get(POINTS).status == 429);
     until("there are points again", || {
-        (daemon.get(POINTS).status == 200).then_some(())
+        daemon.get(POINTS).status == 200
     });
 }
 
@@ -139,9 +135,7 @@ fn a_query_above_the_burst_is_answered_once_and_paid_back() {
     assert_eq!(debt.json()["left"], 0);
     let daemon = Daemon::start(&["rate.points_per_second=1000", "rate.burst_points=100"]);
     assert_eq!(daemon.get(POINTS).status, 200);
-    until("the debt is paid back", || {
-        (daemon.get(POINTS).status == 200).then_some(())
-    });
+    until("the debt is paid back", || daemon.get(POINTS).status == 200);
 }
 
 #[tokio::test(flavor = "multi_thread")]

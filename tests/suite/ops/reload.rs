@@ -22,6 +22,11 @@ fn replace(folder: &Path, name: &str, bytes: &[u8]) {
     fs::rename(new, folder.join(name)).expect("renamed");
 }
 
+/// Puts a table in the place of the first one.
+fn put(daemon: &Daemon, table: &Table) {
+    replace(daemon.folder(), "a.strew", &table.to_bytes());
+}
+
 /// A daemon that reloads its tables only on a signal.
 fn unwatched() -> Daemon {
     Daemon::start(&["reload.watch_seconds=0"])
@@ -33,9 +38,7 @@ fn digest(daemon: &Daemon) -> String {
 
 fn until_served(daemon: &Daemon, table: &Table) {
     let wanted = table.digest().to_string();
-    until("the table is served", || {
-        (digest(daemon) == wanted).then_some(())
-    });
+    until("the table is served", || digest(daemon) == wanted);
 }
 
 fn has_profile(daemon: &Daemon, profile: &str) -> bool {
@@ -48,11 +51,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
     let daemon = unwatched();
     let before = daemon.get(POINTS);
     assert!(!has_profile(&daemon, "added"));
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &other_table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &other_table(ALPHA, PROFILE));
     write(daemon.folder(), "c.strew", &table(ALPHA, "added"));
     fs::remove_file(daemon.folder().join("b.strew")).expect("removable");
     assert_eq!(digest(&daemon), before.header("strew-table"));
@@ -66,11 +65,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
     assert_ne!(after.body, before.body);
     assert_ne!(after.header("etag"), before.header("etag"));
     // And back: nothing is left of the table in between.
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &table(ALPHA, PROFILE));
     daemon.signal("HUP");
     until_served(&daemon, &table(ALPHA, PROFILE));
     assert_eq!(daemon.get(POINTS).body, before.body);
@@ -80,11 +75,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
 fn a_change_of_the_folder_is_noticed() {
     let daemon = Daemon::start(&["reload.watch_seconds=0.05"]);
     let first = digest(&daemon);
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &other_table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &other_table(ALPHA, PROFILE));
     until_served(&daemon, &other_table(ALPHA, PROFILE));
     assert_ne!(digest(&daemon), first);
     // A file overrides a built-in table for as long as it exists.
@@ -96,13 +87,9 @@ fn a_change_of_the_folder_is_noticed() {
     let of_blue = random(ALPHA, "blue", 49);
     write(daemon.folder(), "blue.strew", &of_blue);
     let wanted = of_blue.digest().to_string();
-    until("it is replaced", || {
-        (built_in(&daemon) == wanted).then_some(())
-    });
+    until("it is replaced", || built_in(&daemon) == wanted);
     fs::remove_file(daemon.folder().join("blue.strew")).expect("removable");
-    until("it is back", || {
-        (built_in(&daemon) == shipped).then_some(())
-    });
+    until("it is back", || built_in(&daemon) == shipped);
 }
 
 #[test]
@@ -125,9 +112,7 @@ fn a_bad_file_is_refused_and_the_table_before_serves_on() {
         // A good table shows when the folder has been read.
         write(daemon.folder(), "good.strew", &table(ALPHA, name));
         daemon.signal("HUP");
-        until("the good one is served", || {
-            has_profile(&daemon, name).then_some(())
-        });
+        until("the good one is served", || has_profile(&daemon, name));
         let after = daemon.get(POINTS);
         assert_eq!(after.status, 200, "{name}");
         assert_eq!(
@@ -143,11 +128,7 @@ fn a_bad_file_is_refused_and_the_table_before_serves_on() {
     fs::rename(daemon.folder(), &hidden).expect("renamed");
     daemon.signal("HUP");
     fs::rename(&hidden, daemon.folder()).expect("renamed");
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &other_table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &other_table(ALPHA, PROFILE));
     daemon.signal("HUP");
     until_served(&daemon, &other_table(ALPHA, PROFILE));
     assert!(has_profile(&daemon, "foreign"));
@@ -164,11 +145,7 @@ fn a_stream_ends_with_the_table_it_began_with() {
     );
     let reader = http1::open(daemon.address(), "GET", path, &[]);
     assert_eq!(reader.status, 200);
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &other_table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &other_table(ALPHA, PROFILE));
     daemon.signal("HUP");
     until_served(&daemon, &other_table(ALPHA, PROFILE));
     let (body, complete) = reader.finish();
@@ -185,11 +162,7 @@ fn a_pin_of_a_replaced_table_is_a_conflict() {
     let daemon = unwatched();
     let first = daemon.get(&format!("{POINTS}&limit=10"));
     let (pinned, cursor) = (first.header("strew-table"), first.header("strew-next"));
-    replace(
-        daemon.folder(),
-        "a.strew",
-        &other_table(ALPHA, PROFILE).to_bytes(),
-    );
+    put(&daemon, &other_table(ALPHA, PROFILE));
     daemon.signal("HUP");
     until_served(&daemon, &other_table(ALPHA, PROFILE));
     let refused = daemon.get(&format!("{POINTS}&table={pinned}"));

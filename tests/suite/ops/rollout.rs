@@ -114,7 +114,7 @@ fn while_read(proxy: SocketAddr, readers: &[Reader<'_>], roll: impl FnOnce(&dyn 
                 let before = count(counter);
                 until("clients have more answers", || {
                     assert!(!thread.is_finished(), "a client failed");
-                    (count(counter) >= before + MORE).then_some(())
+                    count(counter) >= before + MORE
                 });
             }
         });
@@ -136,7 +136,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
     let balancer = Proxy::balancer(program, &addresses, Some(&trusted));
     let proxy = balancer.address;
     until("the proxy has found a replica", || {
-        (http1::open(proxy, "GET", "/readyz", &[]).status == 200).then_some(())
+        http1::open(proxy, "GET", "/readyz", &[]).status == 200
     });
     let get = |path: &str, key: &str| http1::get(proxy, path, &[("x-api-key", key)]);
     let first = get(CHUNK, "old");
@@ -199,10 +199,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
             write_field(&replica.files, 0.9);
             replica.daemon.signal("HUP");
             until("the replica has the new field", || {
-                replica
-                    .status(&trust, &pinned, "new")
-                    .contains("409")
-                    .then_some(())
+                replica.status(&trust, &pinned, "new").contains("409")
             });
             let before = refused.load(Ordering::Relaxed);
             read_on();
@@ -229,10 +226,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
             write_keys(&replica.files, &new);
             replica.daemon.signal("HUP");
             until("the old key is refused", || {
-                replica
-                    .status(&trust, CHUNK, "old")
-                    .contains("401")
-                    .then_some(())
+                replica.status(&trust, CHUNK, "old").contains("401")
             });
             read_on();
         }

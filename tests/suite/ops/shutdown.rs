@@ -11,7 +11,7 @@ use tonic::Code;
 
 use crate::support::{
     daemon::Daemon,
-    grpc::{LONG, square},
+    grpc::{LONG, broken_off, square},
     queries::long,
 };
 
@@ -30,7 +30,7 @@ fn readiness_ends_first_and_requests_are_still_answered() {
     let mut daemon = Daemon::start(&["shutdown.notice_seconds=2"]);
     daemon.terminate();
     until("the daemon is not ready", || {
-        (daemon.get("/readyz").status == 503).then_some(())
+        daemon.get("/readyz").status == 503
     });
     assert_eq!(daemon.get("/livez").status, 200);
     let points = daemon.get("/v1/points?bbox=0,0,5,5&density=1&profile=test");
@@ -57,7 +57,7 @@ fn a_stream_that_ends_in_time_is_complete() {
 
 #[test]
 fn a_stream_that_does_not_end_in_time_is_incomplete() {
-    let mut daemon = Daemon::start(&["shutdown.drain_seconds=0.3"]);
+    let mut daemon = Daemon::with_log(&["shutdown.drain_seconds=0.3"]);
     let open = |format: &str| http1::open(daemon.address(), "GET", &long(format), &[]);
     let readers = [open("ndjson"), open("f32"), open("json")];
     // A reader that never reads on must not delay the end.
@@ -67,6 +67,7 @@ fn a_stream_that_does_not_end_in_time_is_incomplete() {
     let start = Instant::now();
     assert_eq!(daemon.wait().code(), Some(0));
     assert!(start.elapsed() < Duration::from_secs(5));
+    assert!((daemon.log_line("format=\"f64\"")).contains("broken=\"server\""));
     for thread in threads {
         let complete = thread.join().expect("no panic");
         assert!(!complete, "the answer looks complete");
@@ -88,13 +89,7 @@ async fn a_grpc_stream_that_does_not_end_in_time_gets_a_status() {
         .expect("a message")
         .expect("a header");
     daemon.terminate();
-    let status = loop {
-        match stream.message().await {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("the stream looks complete"),
-            Err(status) => break status,
-        }
-    };
+    let status = broken_off(&mut stream).await;
     assert_eq!(status.code(), Code::Unavailable, "{status:?}");
     assert!(status.message().contains("incomplete"), "{status:?}");
     let ended = tokio::task::spawn_blocking(move || daemon.wait());

@@ -77,7 +77,7 @@ fn vanished_clients_leave_nothing_running() {
 fn idle(daemon: &Daemon) {
     until("the daemon is idle", || {
         let ticks = daemon.cpu_ticks_over(Duration::from_millis(300));
-        (ticks <= 1).then_some(())
+        ticks <= 1
     });
 }
 

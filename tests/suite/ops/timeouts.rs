@@ -8,8 +8,7 @@ use std::{
 };
 
 use strew::grpc::proto::{
-    CountPointsRequest, PointSet, StreamPointsRequest, point_service_client::PointServiceClient,
-    point_set::Amount,
+    PointSet, StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
 };
 use strew_testkit::{
     http1::{self, read_to_close},
@@ -20,7 +19,7 @@ use tonic_types::StatusExt as _;
 
 use crate::support::{
     daemon::{Daemon, PROFILE},
-    grpc::{LONG, boxed, square},
+    grpc::{LONG, boxed, broken_off, square},
     queries::{MANY_ROWS, SLOW, long},
 };
 
@@ -91,9 +90,7 @@ fn a_plan_that_takes_too_long_is_refused_and_stops() {
         assert_eq!(answer.status, 503, "{}", answer.text());
         assert_eq!(answer.header("retry-after"), "5");
         assert_eq!(answer.json()["type"], "urn:strew:problem:time-over");
-        until("the daemon stops computing", || {
-            (!is_busy(&daemon)).then_some(())
-        });
+        until("the daemon stops computing", || !is_busy(&daemon));
     }
     assert_eq!(daemon.streams(), 0);
 }
@@ -112,17 +109,14 @@ async fn a_call_that_takes_too_long_is_refused_and_stops() {
         }),
         ..StreamPointsRequest::default()
     };
-    let query = Some(request);
-    let status = client.count_points(CountPointsRequest { query }).await;
+    let status = client.count_points(request).await;
     let status = status.expect_err("it takes too long");
     assert_eq!(status.code(), Code::ResourceExhausted, "{status:?}");
     let details = status.get_error_details();
     assert_eq!(details.error_info().expect("details").reason, "TIME_OVER");
     let delay = details.retry_info().expect("details").retry_delay;
     assert_eq!(delay, Some(Duration::from_secs(5)));
-    until("the daemon stops computing", || {
-        (!is_busy(&daemon)).then_some(())
-    });
+    until("the daemon stops computing", || !is_busy(&daemon));
 }
 
 #[test]
@@ -130,11 +124,9 @@ fn a_plan_stops_when_its_client_leaves() {
     let daemon = patient(&["server.first_byte_seconds=3600"]);
     let body = Some(SLOW.as_bytes());
     let client = http1::send(daemon.address(), "POST", "/v1/count", &[], body).expect("sent");
-    until("the daemon computes", || is_busy(&daemon).then_some(()));
+    until("the daemon computes", || is_busy(&daemon));
     drop(client);
-    until("the daemon stops computing", || {
-        (!is_busy(&daemon)).then_some(())
-    });
+    until("the daemon stops computing", || !is_busy(&daemon));
 }
 
 #[test]
@@ -157,13 +149,7 @@ async fn a_grpc_stream_that_takes_too_long_gets_a_status() {
         .await
         .expect("an answer")
         .into_inner();
-    let status = loop {
-        match stream.message().await {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("the stream looks complete"),
-            Err(status) => break status,
-        }
-    };
+    let status = broken_off(&mut stream).await;
     assert_eq!(status.code(), Code::ResourceExhausted, "{status:?}");
     assert!(status.message().contains("incomplete"), "{status:?}");
 }

@@ -149,7 +149,7 @@ fn new_certificates_serve_new_connections_and_bad_ones_change_nothing() {
     second.write_server(folder);
     hang_up();
     until("the new certificate is shown", || {
-        (shown(&daemon, &config) == second.der).then_some(())
+        shown(&daemon, &config) == second.der
     });
     get(&mut open, "/livez").expect("the old connection goes on");
 
@@ -169,7 +169,7 @@ fn new_certificates_serve_new_connections_and_bad_ones_change_nothing() {
         let shown = shown(&daemon, &config);
         let is_known = [&second, &third].map(|issued| shown == issued.der);
         assert_ne!(is_known, [false, false], "another certificate is presented");
-        is_known[1].then_some(())
+        is_known[1]
     });
 }
 
@@ -183,7 +183,7 @@ fn changed_files_are_noticed_without_a_signal() {
     let second = authority.issue_server();
     second.write_server(folder.path());
     until("the new certificate is shown", || {
-        (shown(&daemon, &config) == second.der).then_some(())
+        shown(&daemon, &config) == second.der
     });
 }
 

@@ -1,13 +1,8 @@
-//! The first seconds of `/`: points pour into place; nothing that is there moves; all fits in windows of phones.
+//! The first seconds of `/`: points pour into place; all fits in windows of phones.
 
 use serde_json::json;
 
 use crate::support::browser::{Browser, key::ESCAPE, looking};
-
-/// The sum of the layout shifts since the page was opened.
-const SHIFTS: &str = "(() => { const observer = new PerformanceObserver(() => {}); \
-    observer.observe({ type: 'layout-shift', buffered: true }); \
-    return observer.takeRecords().reduce((sum, { value, hadRecentInput }) => sum + (hadRecentInput ? 0 : value), 0); })()";
 
 const POUR: &str = "document.documentElement.dataset.pour";
 
@@ -76,24 +71,6 @@ fn the_pouring_is_left_at_once_and_only_seen_without_a_link() {
     browser.look(&daemon, "");
     assert_eq!(browser.value(POUR), "still");
     assert_eq!(browser.value(SEEN), json!([false, true]));
-}
-
-#[test]
-fn nothing_moves_while_the_page_fills() {
-    let Some((daemon, browser)) = looking(1280, 800) else {
-        return;
-    };
-    for (width, height) in [(1280, 800), (390, 844), (844, 390), (320, 568)] {
-        browser.resize(width, height);
-        for hash in ["", "#at=0,0&span=30&layers=2&2.amount=3"] {
-            browser.look(&daemon, hash);
-            if hash.is_empty() {
-                browser.until("document.documentElement.dataset.start === 'ready'");
-            }
-            let shifts = browser.value(SHIFTS).as_f64().expect("a number");
-            assert!(shifts <= 0.05, "{width} × {height} {hash}: {shifts}");
-        }
-    }
 }
 
 /// Fails unless an element is in the window, with nothing else over its middle.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use serde_json::{Value, json};
+use serde_json::json;
 use strew::grpc::proto::{
     PointSet, StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
 };
@@ -151,9 +151,7 @@ fn nothing_appears_where_a_tree_was_felled() {
     let file = daemon.folder().join("strew.toml");
     fs::write(&file, WORLD.replace("ids = []", &format!("ids = {list}"))).expect("writable");
     daemon.signal("HUP");
-    until("the list is read", || {
-        (rows(&daemon, CHUNK) == left).then_some(())
-    });
+    until("the list is read", || rows(&daemon, CHUNK) == left);
     assert_ne!(daemon.get(CHUNK).header("etag"), tag);
     let lists = daemon.get("/v1/except").json();
     assert_eq!(lists["lists"][0]["count"], gone.len());
@@ -197,16 +195,14 @@ fn a_folder_of_lists_is_watched() {
     // Ids that are no points of this set, or are elsewhere, change nothing.
     write(&format!("{}\n\n1:0 # none\n99999:5\n", gone.join("\n")));
     let left = without(&all, &gone, 0);
-    until("the list is read", || {
-        (rows(&daemon, &listed) == left).then_some(())
-    });
+    until("the list is read", || rows(&daemon, &listed) == left);
     // A wrong list does not replace it.
     write("1:2\nthree\n");
     daemon.signal("HUP");
     fs::write(folder.path().join("new.txt"), "1:2").expect("writable");
     until("the folder is read", || {
         let lists = daemon.get("/v1/except").json();
-        (lists["lists"].as_array().map(Vec::len) == Some(2)).then_some(())
+        lists["lists"].as_array().map(Vec::len) == Some(2)
     });
     assert_eq!(rows(&daemon, &listed), left);
 }
@@ -324,7 +320,7 @@ fn a_list_that_was_sent_is_for_worlds_too() {
     daemon.signal("HUP");
     until("the list is read", || {
         let lists = daemon.get("/v1/except").json();
-        (lists["lists"][0]["count"] == 1).then_some(())
+        lists["lists"][0]["count"] == 1
     });
     assert_eq!(rows(&daemon, &named), without(&all, &gone, 1));
 }
@@ -377,13 +373,7 @@ fn lists_of_one_address_do_not_push_out_those_of_another() {
     let first = sent(&daemon, "1:2");
     let mut last = String::new();
     for i in 0..40 {
-        let body = format!("{i}:3");
-        let mut waiting = sending::post(daemon.address(), "/v1/except", &body).expect("sent");
-        let text = sending::answer(&mut waiting);
-        assert!(text.starts_with("HTTP/1.1 200"), "{text}");
-        let body = text.split("\r\n\r\n").nth(1).expect("a body");
-        let body: Value = serde_json::from_str(body).expect("JSON");
-        last = body["digest"].as_str().expect("a digest").into();
+        last = sending::digest(daemon.address(), "/v1/except", &format!("{i}:3"));
     }
     for digest in [first, last] {
         let path = format!("/v1/count?bbox=0,0,9,9&spacing=1&except={digest}");

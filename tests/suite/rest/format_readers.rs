@@ -12,25 +12,11 @@ use crate::support::{
 };
 
 const QUERY: &str = "/v1/points?bbox=-3.5,1,40,33.25&density=7&profile=test&seed=5&format=";
-const SCRIPT: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/tests/suite/rest/format_readers.py"
-);
 
 /// The points that a reader finds in a file, as ids (empty where the format has none) and
 /// coordinates; `None` if the reader is not installed.
 fn read(format: &str, file: &Path) -> Option<Vec<(String, [f64; 2])>> {
-    let output = clients::python(&format!("a reader of {format}"))?
-        .args([Path::new(SCRIPT), Path::new(format), file])
-        .output()
-        .expect("Python runs");
-    let message = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(77) {
-        eprintln!("skipped: {format}: {}", message.trim());
-        return None;
-    }
-    assert!(output.status.success(), "{format}: {message}");
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let text = clients::read_by("tests/suite/rest/format_readers.py", format, file)?;
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("id,x,y"));
     let row = |line: &str| {

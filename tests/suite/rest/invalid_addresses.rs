@@ -54,7 +54,6 @@ points?bbox=0,0,9,9&density=1&spacing=1 | spacing | density
 ~&warp=NaN | warp | NaN
 ~&seed=18446744073709551616 | seed | 18446744073709551616
 ~&format=xml | format | xml | ndjson
-~&format=parquet | format | strew sample | arrow
 ~&format=csv&decimals=18 | decimals | 18 | 0 to 17
 ~&decimals=-1 | decimals | -1
 ~&decimals=3&format=f64 | decimals | f64 | ndjson | csv
@@ -259,7 +258,7 @@ space/chunks/4/0/0/0?spacing=1&bbox=0,0,0,1,1,1 | bbox | not allowed here
 space/points/0:0?spacing=1 | id | three integers joined by colons
 space/nearest?at=0,0&spacing=1 | at | expected 3 numbers, got 2
 space/nearest?at=0,0,0&k=10001&spacing=1 | k | 10000
-space/nearest?at=0,0,0&radius=50&spacing=1 | radius | too many points
+space/nearest?at=0,0,0&radius=50&spacing=1 | radius | about 523599 points lie within
 space/points?bbox=1e6,0,0,1000002,2,2&spacing=1&format=usda | format | 21 bits
 points?bbox=0,0,0,1,1,1&spacing=1 | bbox | expected 4 numbers, got 6
 points?bbox=0,0,1,1&spacing=1&attributes=rotation | attributes | in the plane points have an angle

@@ -220,9 +220,7 @@ fn joint_kinds_have_points_of_their_own() {
 fn an_answer_that_waits_for_labels_says_so_and_when_to_come_back() {
     let daemon = Daemon::with_tables(no_tables(), &["server.first_byte_seconds=0.1"]);
     let address = "/v1/count?bbox=0,0,30,30&spacing=1&map=m";
-    until("the table is read", || {
-        (daemon.get(address).status == 200).then_some(())
-    });
+    until("the table is read", || daemon.get(address).status == 200);
     let mut waits = vec![];
     until("the labels are made", || {
         let kinds = "spread=even&variants=oak:13,birch:7,ash:5,elm:3,fir:2,yew:1";

@@ -301,7 +301,7 @@ fn heads_have_4_kb_at_most_whatever_the_query() {
             9,
         ),
         (
-            json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "spread": "even", "limit": 2,
+            json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "map": "s", "spread": "even", "limit": 2,
                 "variants": variants, "attributes": attributes }),
             1,
         ),

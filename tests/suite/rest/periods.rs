@@ -36,6 +36,17 @@ fn a_period_tiles_and_says_what_it_is() {
     assert_eq!(query["period"], period);
     assert_eq!(query["periodic"], 5000);
     assert_eq!(query["bbox"], json!([0.0, 0.0, 142.0, 142.0]));
+    // Formats without a query say it in the head, the command line in its words.
+    let told: Value = serde_json::from_str(whole.answer.header("strew-period")).expect("JSON");
+    assert_eq!(told, period);
+    let plain = daemon.get("/v1/points?bbox=0,0,9,9&spacing=1");
+    assert_eq!(plain.header("strew-period"), "");
+    let args = "sample --periodic 5000 --map s --spacing 2 --seed 7 --format csv --output -";
+    let said = command::errors(&command::run(&args.split(' ').collect::<Vec<_>>(), ""));
+    assert!(
+        said.contains("map s, period 183/112 of 5041 points and side 142, "),
+        "{said}"
+    );
     // Across the seam points keep the distance that is guaranteed.
     let promised = query["least_distance"].as_f64().expect("a number");
     let least = least_distance(&places, 142.0);

@@ -204,9 +204,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     let text = WORLDS.replace("spacing = 1.5", "spacing = 2.5");
     fs::write(&file, format!("{text}\n[worlds.new]\ndensity = 1\n")).expect("writable");
     daemon.signal("HUP");
-    until("there is a new world", || {
-        (names().len() == 3).then_some(())
-    });
+    until("there is a new world", || names().len() == 3);
     let after = names();
     assert_eq!(after[0], before[0], "the forest is as before");
     assert_ne!(after[1], before[1], "the meadow is another");
@@ -214,9 +212,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     let wrong = text.replace("spacing = 2.5", "spacing = -1");
     fs::write(&file, wrong).expect("writable");
     daemon.signal("HUP");
-    until("the new world is gone", || {
-        (names().len() == 2).then_some(())
-    });
+    until("the new world is gone", || names().len() == 2);
     assert_eq!(names(), after[..2]);
     assert_eq!(daemon.get("/v1/worlds/meadow/chunks/9/0/0").status, 200);
     // A file that is no TOML changes nothing.
@@ -245,7 +241,7 @@ fn a_folder_has_worlds_too() {
     write("dunes.toml", "spacing = 3\nseed = 3");
     let wanted = text("/v1/chunks/16/0/0?spacing=3&seed=3&format=csv");
     until("the file is noticed", || {
-        (text("/v1/worlds/dunes/chunks/16/0/0?format=csv") == wanted).then_some(())
+        text("/v1/worlds/dunes/chunks/16/0/0?format=csv") == wanted
     });
 }
 

@@ -16,23 +16,12 @@ const ATTRIBUTES: &str = "&attributes=rotation,variant&variants=ice:1,rock:3";
 
 /// The lines that a reader makes of a file; `None` if it is not installed.
 fn read(format: &str, file: &Path) -> Option<Vec<(String, [f64; 3])>> {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/space/readers.py");
-    let output = clients::python(&format!("a reader of {format}"))?
-        .args([Path::new(script), Path::new(format), file])
-        .output()
-        .expect("Python runs");
-    let message = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(77) {
-        eprintln!("skipped: {format}: {}", message.trim());
-        return None;
-    }
-    assert!(output.status.success(), "{format}: {message}");
+    let text = clients::read_by("tests/suite/space/readers.py", format, file)?;
     let read = |line: &str| {
         let fields: Vec<&str> = line.split(',').collect();
         let number = |i: usize| fields[i].parse().expect("a number");
         (fields[0].to_owned(), [number(1), number(2), number(3)])
     };
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
     Some(text.lines().map(read).collect())
 }
 

@@ -64,7 +64,7 @@ fn volumes_have_the_points_of_the_library() {
                     assert_eq!(answer.header("strew-origin"), "21.0,-14.0,0.0");
                     let moved = plan.iter().map(|point| {
                         let [x, y, z] = point.at();
-                        (point.id.to_string(), [x - 21.0, y + 14.0, z])
+                        (point.id().to_string(), [x - 21.0, y + 14.0, z])
                     });
                     moved.collect()
                 }
@@ -151,10 +151,10 @@ fn single_points_and_neighbors_are_those_of_the_library() {
         .iter()
         .zip(&found)
     {
-        assert_eq!(told["id"], json!(expected.point.id.to_string()));
-        assert_eq!(told["z"], json!(expected.point.z));
+        assert_eq!(told["id"], json!(expected.member.id().to_string()));
+        assert_eq!(told["z"], json!(expected.member.point().z));
         assert_eq!(told["distance"], json!(expected.distance));
-        let id = expected.point.id;
+        let id = expected.member.id();
         assert_eq!(told["rank"], json!(own.rank(id)));
         let single = daemon.get(&format!("/v1/space/points/{id}?{query}")).json();
         let mut point = told.clone();

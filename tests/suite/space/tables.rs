@@ -54,9 +54,7 @@ fn a_folder_may_have_tables_of_both_dimensions_under_one_name() {
     fs::write(daemon.folder().join("c.strew"), other.to_bytes()).expect("written");
     daemon.signal("HUP");
     let path = "/v1/space/count?bbox=0,0,0,4,4,4&spacing=1&profile=other&alpha=sqrt(3)";
-    until("the folder is read", || {
-        (daemon.get(path).status == 200).then_some(())
-    });
+    until("the folder is read", || daemon.get(path).status == 200);
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn points_that_were_taken_away_are_left_out() {
     let own = set(1.2, 5);
     let ids: Vec<_> = within(&own, ball())
         .iter()
-        .map(|point| point.id)
+        .map(|point| point.id())
         .step_by(3)
         .collect();
     let names: Vec<String> = ids.iter().map(ToString::to_string).collect();

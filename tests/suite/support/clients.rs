@@ -1,7 +1,10 @@
 //! Clients and proxies that tests use where they are installed. Where one is missing, a message says
 //! so and the test is skipped.
 
-use std::{path::PathBuf, process::Command};
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// The path of a program in `PATH`.
 pub fn find(program: &str) -> Option<PathBuf> {
@@ -22,4 +25,20 @@ pub fn python(package: &str) -> Option<Command> {
         eprintln!("skipped: STREW_TEST_PYTHON names no Python with {package}");
     }
     python.map(Command::new)
+}
+
+/// What a script of Python reads of a file; `None` if what it needs is not installed.
+pub fn read_by(script: &str, format: &str, file: &Path) -> Option<String> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(script);
+    let output = python(&format!("a reader of {format}"))?
+        .args([&script, Path::new(format), file])
+        .output()
+        .expect("Python runs");
+    let message = String::from_utf8_lossy(&output.stderr);
+    if output.status.code() == Some(77) {
+        eprintln!("skipped: {format}: {}", message.trim());
+        return None;
+    }
+    assert!(output.status.success(), "{format}: {message}");
+    Some(String::from_utf8(output.stdout).expect("UTF-8"))
 }

@@ -37,6 +37,13 @@ pub fn errors(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// Fails unless a command says some words on standard error.
+#[track_caller]
+pub fn assert_says(output: &Output, words: &str) {
+    let text = errors(output);
+    assert!(text.contains(words), "no `{words}`: {text}");
+}
+
 /// A folder in which commands run as lines of a shell do: words between spaces or
 /// in quotes, files by their names.
 pub struct Shell(TempDir);

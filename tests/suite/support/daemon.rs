@@ -155,7 +155,7 @@ impl Daemon {
 
     /// Waits until no stream is in progress.
     pub fn until_no_streams(&self) {
-        until("no stream is left", || (self.streams() == 0).then_some(()));
+        until("no stream is left", || self.streams() == 0);
     }
 
     /// A figure of `/proc/PID/status` in KiB, such as `VmRSS`.

@@ -8,10 +8,21 @@ use strew::grpc::proto::{
     StreamSummary, point_service_client::PointServiceClient, point_set::Amount, region::Shape,
     stream_points_response::Message,
 };
-use tonic::{Code, Status, transport::Channel};
+use tonic::{Code, Status, Streaming, transport::Channel};
 use tonic_types::StatusExt as _;
 
 use super::daemon::PROFILE;
+
+/// The status that breaks off a stream.
+pub async fn broken_off<T>(stream: &mut Streaming<T>) -> Status {
+    loop {
+        match stream.message().await {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("the stream looks complete"),
+            Err(status) => return status,
+        }
+    }
+}
 
 /// A box as a region.
 pub fn boxed([min_x, min_y, max_x, max_y]: [f64; 4]) -> Option<Region> {

@@ -5,6 +5,8 @@ use std::{
     net::{SocketAddr, TcpStream},
 };
 
+use serde_json::Value;
+
 use super::attack;
 
 /// Sends a POST from another address than others use; its answer is read later.
@@ -16,6 +18,15 @@ pub fn post(to: SocketAddr, path: &str, body: &str) -> io::Result<TcpStream> {
         "POST {path} HTTP/1.1\r\nhost: {to}\r\nconnection: close\r\ncontent-length: {length}\r\n\r\n{body}"
     )?;
     Ok(stream)
+}
+
+/// Sends a field or a list from another address than others use. Returns its digest.
+pub fn digest(to: SocketAddr, path: &str, body: &str) -> String {
+    let text = answer(&mut post(to, path, body).expect("sent"));
+    assert!(text.starts_with("HTTP/1.1 200"), "{text}");
+    let body = text.split("\r\n\r\n").nth(1).expect("a body");
+    let body: Value = serde_json::from_str(body).expect("JSON");
+    body["digest"].as_str().expect("a digest").into()
 }
 
 /// The answer to the bytes sent, head and body.

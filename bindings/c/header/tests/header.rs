@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-/// The macros of the version in a manifest.
+/// The macros of the version in the manifest of the workspace.
 fn version_macros(manifest: &str) -> String {
     let found = manifest.lines().find_map(|line| {
         let version = line.strip_prefix("version = \"")?;
@@ -52,7 +52,7 @@ fn in_c89(header: &str) -> String {
 fn the_header_is_current() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = root.parent().expect("the folder of the library");
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("the manifest");
+    let manifest = fs::read_to_string(root.join("../Cargo.toml")).expect("the manifest");
     let mut config =
         cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
     config.after_includes = Some(version_macros(&manifest));

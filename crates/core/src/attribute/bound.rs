@@ -1,11 +1,11 @@
 //! The attributes of one point set, as columns.
 
 use alloc::{sync::Arc, vec::Vec};
-use core::{f64::consts::TAU, fmt};
+use core::fmt;
 
 use super::{
     Attribute, Attributes, Kinds, ScaleRange,
-    hash::{Hashed, angle, hash, in_row, key, scale, unit},
+    hash::{Hashed, angle, hash, in_row, key, rotation, scale, turns, unit},
     scales::{Spread, VariantScales},
 };
 use crate::{
@@ -270,13 +270,12 @@ impl<Id: Hashed> BoundAttributes<Id> {
     }
 
     fn write_rotations(&self, ids: &Rows<Id>, parts: &mut [Column]) {
-        let keys = [0, 1, 2].map(|i| key(self.seed, Attribute::ROTATION + i));
+        let keys = turns(self.seed);
         let mut parts: Vec<&mut [f64]> = (parts.iter_mut())
             .map(|part| numbers(part, ids.ids.len()))
             .collect();
         for (i, &id) in ids.ids.iter().enumerate() {
-            let all = rotation(keys.map(|key| unit(hash(key, id))));
-            for (part, v) in parts.iter_mut().zip(all) {
+            for (part, v) in parts.iter_mut().zip(rotation(keys, id)) {
                 part[i] = v;
             }
         }
@@ -314,19 +313,6 @@ impl<Id: Hashed> BoundAttributes<Id> {
         let kind = self.indices.kind(id).unwrap_or(0);
         kinds.index(kind).unwrap_or(0)
     }
-}
-
-/// A rotation as a unit quaternion x, y, z, w, uniform for uniform numbers (Shoemake, "Uniform random rotations", 1992).
-fn rotation([u, v, w]: [f64; 3]) -> [f64; 4] {
-    let (low, high) = (libm::sqrt(1.0 - u), libm::sqrt(u));
-    let (sine, cosine) = libm::sincos(TAU * v);
-    let (other_sine, other_cosine) = libm::sincos(TAU * w);
-    [
-        low * sine,
-        low * cosine,
-        high * other_sine,
-        high * other_cosine,
-    ]
 }
 
 /// Makes a column one of numbers, in its memory if it is.

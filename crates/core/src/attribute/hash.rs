@@ -4,9 +4,9 @@
 //! the attribute. The row comes first, so the points of a row share that round. Numbers are its upper 53 bits, so they
 //! are exact multiples of 2⁻⁵³ below 1.
 
-use core::f64::consts::TAU;
+use core::{f64::consts::TAU, fmt::Debug};
 
-use super::ScaleRange;
+use super::{Attribute, ScaleRange};
 use crate::lattice::{
     Point, PointId,
     seed::{Seed, split_mix},
@@ -19,9 +19,9 @@ pub(crate) fn key(seed: Seed, code: u64) -> u64 {
 }
 
 /// The id of a point, in the plane or in space.
-pub trait Hashed: Copy {
+pub trait Hashed: Copy + Debug + Ord {
     /// The points that have such ids.
-    type Point;
+    type Point: Copy + Debug + Default + PartialEq;
     /// Whether they have rotations.
     const TURNS: bool;
     /// The id of a point.
@@ -93,6 +93,25 @@ pub(crate) fn unit(hash: u64) -> f64 {
 #[inline]
 pub(crate) fn angle(hash: u64) -> f64 {
     unit(hash) * TAU
+}
+
+/// The keys of the numbers that rotations are made from.
+pub(crate) fn turns(seed: Seed) -> [u64; 3] {
+    [0, 1, 2].map(|i| key(seed, Attribute::ROTATION + i))
+}
+
+/// A rotation as a unit quaternion x, y, z, w, uniform for uniform numbers (Shoemake, "Uniform random rotations", 1992).
+pub(crate) fn rotation(keys: [u64; 3], id: impl Hashed) -> [f64; 4] {
+    let [u, v, w] = keys.map(|key| unit(hash(key, id)));
+    let (low, high) = (libm::sqrt(1.0 - u), libm::sqrt(u));
+    let (sine, cosine) = libm::sincos(TAU * v);
+    let (other_sine, other_cosine) = libm::sincos(TAU * w);
+    [
+        low * sine,
+        low * cosine,
+        high * other_sine,
+        high * other_cosine,
+    ]
 }
 
 /// A number in a range, both ends included.

@@ -181,6 +181,65 @@ macro_rules! requested {
             ) -> Result<Vec<Neighbor>, Error> {
                 self.nearest_visiting(at, k, Some(radius), &Visits::any())
             }
+
+            /// All points within `radius` of a place, nearest first; of equally near ones the smaller id first. A point lies
+            /// within if its reported distance is at most the radius.
+            ///
+            /// # Errors
+            /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,
+            /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if more than `limit` points lie within it (at most
+            /// [`MAX_CANDIDATES`](Self::MAX_CANDIDATES)), and as [`nearest`](Self::nearest).
+            ///
+            /// ```
+            #[doc = concat!("# let wells = ", $make, ".seed(3);")]
+            #[doc = concat!("let near = wells.around(", $at, ", 2.0, 100)?;")]
+            #[doc = concat!("assert_eq!(near, wells.nearest_within(", $at, ", 100, 2.0)?);")]
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn around(
+                &self,
+                at: [f64; $dimensions],
+                radius: f64,
+                limit: usize,
+            ) -> Result<Vec<Neighbor>, Error> {
+                self.around_visiting(at, radius, limit, &Visits::any())
+            }
+
+            /// [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, which visits a
+            /// bounded number of points.
+            ///
+            /// # Errors
+            /// As those, [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited, and
+            /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+            pub fn nearest_visiting(
+                &self,
+                at: [f64; $dimensions],
+                k: usize,
+                radius: Option<f64>,
+                visits: &Visits,
+            ) -> Result<Vec<Neighbor>, Error> {
+                search::nearest(self, at, k, radius, visits)
+            }
+
+            /// [`around`](Self::around), which visits a bounded number of points.
+            ///
+            /// # Errors
+            /// As [`nearest_visiting`](Self::nearest_visiting).
+            pub fn around_visiting(
+                &self,
+                at: [f64; $dimensions],
+                radius: f64,
+                limit: usize,
+                visits: &Visits,
+            ) -> Result<Vec<Neighbor>, Error> {
+                search::within(self, at, radius, limit.min(Self::MAX_CANDIDATES), visits)
+            }
+
+            /// The largest absolute coordinate that a search may reach, in world units.
+            #[must_use]
+            pub fn search_limit(&self) -> f64 {
+                self.density().limit
+            }
         }
     };
 }

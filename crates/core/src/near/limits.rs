@@ -1,6 +1,6 @@
 //! The limits of searches, checked before the work, and the number of points that a search may visit and has visited.
 
-use core::{cell::Cell, ops::ControlFlow};
+use core::{cell::Cell, f64::consts::PI, ops::ControlFlow};
 
 use crate::{
     error::{Error, ErrorKind, exponential, number, rounded},
@@ -17,11 +17,6 @@ pub(crate) const MAX_CANDIDATES: usize = 4_000_000;
 const MAX_LINES: f64 = 1e7;
 /// Lattice units kept free at the limit: more than the longest displacement and warp.
 pub(crate) const BORDER: i64 = 1 << 20;
-
-/// The largest absolute coordinate that a search may reach.
-pub(crate) fn limit(lattice: &Lattice) -> f64 {
-    lattice.world(fixed(LATTICE_LIMIT - BORDER))
-}
 
 /// The names of the coordinates of a place.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -93,32 +88,66 @@ pub(crate) fn check_radius(radius: f64) -> Result<(), Error> {
     ))
 }
 
-/// Refuses a radius for which more than `limit` points must be visited, kept or not, or too many lattice
-/// lines.
-pub(super) fn check_work(lattice: &Lattice, radius: f64, limit: usize) -> Result<(), Error> {
-    let stretched = radius * lattice.stretch.factor;
-    check_number(lattice, stretched, 1.0, limit)?;
-    let lines = stretched / lattice.world(fixed(1));
-    if lines <= MAX_LINES {
-        Ok(())
-    } else {
-        Err(too_many(radius, lines, limit))
+/// How close the points of a lattice are, and how far it reaches.
+pub(crate) struct Density<const D: usize> {
+    /// The mean spacing of all points.
+    pub(crate) spacing: f64,
+    /// About the share of these that there are.
+    pub(crate) share: f64,
+    /// The factor of a search's radius within which points are visited.
+    pub(crate) stretch: f64,
+    /// The distance of lattice lines.
+    pub(crate) line: f64,
+    /// The largest absolute coordinate that a search may reach.
+    pub(crate) limit: f64,
+}
+
+impl<const D: usize> Density<D> {
+    /// The area of a disk of radius 1, or the volume of a ball.
+    const BALL: f64 = if D == 2 { PI } else { 4.0 / 3.0 * PI };
+
+    /// The radius of a ball that holds `points` points on average.
+    pub(super) fn radius_of(&self, points: f64) -> f64 {
+        let spacings = points / (Self::BALL * self.share);
+        let root = if D == 2 { libm::sqrt } else { libm::cbrt };
+        self.spacing * root(spacings)
+    }
+
+    /// Refuses a radius for which more than `limit` points must be visited, kept or not, or too many lattice
+    /// lines.
+    pub(super) fn check_work(&self, radius: f64, limit: usize) -> Result<(), Error> {
+        let stretched = radius * self.stretch;
+        self.check_number(stretched, 1.0, limit)?;
+        let lines = stretched / self.line;
+        if lines <= MAX_LINES {
+            Ok(())
+        } else {
+            Err(too_many(radius, lines, limit))
+        }
+    }
+
+    /// Refuses a radius within which more than `limit` points of a share of all lie on average.
+    pub(super) fn check_number(&self, radius: f64, share: f64, limit: usize) -> Result<(), Error> {
+        let spacings = [radius / self.spacing; D];
+        let about = Self::BALL * spacings.iter().product::<f64>() * share;
+        if about <= limit as f64 {
+            Ok(())
+        } else {
+            Err(too_many(radius, about, limit))
+        }
     }
 }
 
-/// Refuses a radius within which more than `limit` points of a share of all lie on average.
-pub(super) fn check_number(
-    lattice: &Lattice,
-    radius: f64,
-    share: f64,
-    limit: usize,
-) -> Result<(), Error> {
-    let spacings = radius / lattice.placement.spacing.get();
-    let about = core::f64::consts::PI * spacings * spacings * share;
-    if about <= limit as f64 {
-        Ok(())
-    } else {
-        Err(too_many(radius, about, limit))
+impl Density<2> {
+    /// Of a lattice of the plane.
+    pub(crate) fn of(lattice: &Lattice) -> Self {
+        Self {
+            spacing: lattice.placement.spacing.get(),
+            share: lattice.share(),
+            stretch: lattice.stretch.factor,
+            line: lattice.world(fixed(1)),
+            limit: lattice.world(fixed(LATTICE_LIMIT - BORDER)),
+        }
     }
 }
 

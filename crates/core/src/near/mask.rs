@@ -9,32 +9,67 @@ use core::{cell::RefCell, ops::ControlFlow};
 
 use super::{
     clear::{Clear, ClearOf, OtherSet, refused},
-    limits::{check_number, check_place, check_radius, check_reach, check_work, limit},
+    limits::{Density, check_place, check_radius, check_reach},
     scan::{Scratch, scan},
 };
 use crate::{
     error::Error,
-    lattice::{Keep, Lattice, Point},
+    lattice::{Keep, Lattice, Point, alike},
     parts::CLEARANCE,
-    shape::{Area, Region},
+    shape::{Area, Outlined, Polygon, Region, Shape},
     stop::Stop,
 };
 
-/// The conditions on the places of a set's points.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Mask {
+/// The conditions on the places of a set's points, beside its share, where `O` is a set that it keeps clear of.
+#[derive(Clone, Debug)]
+pub(crate) struct Mask<O = Other, const D: usize = 2, P = Polygon> {
     /// The area in which they lie, if not everywhere.
-    pub(crate) area: Option<Area>,
+    pub(crate) area: Option<Arc<Shape<D, P>>>,
     /// The sets that they keep clear of.
-    pub(crate) clear: Arc<[ClearOf<Other>]>,
+    pub(crate) clear: Arc<[ClearOf<O>]>,
 }
 
-/// A set of the plane that others keep clear of.
-#[derive(Clone, Debug)]
-pub(crate) struct Other {
-    lattice: Lattice,
-    mask: Mask,
-    scratch: Scratch,
+impl<O, const D: usize, P> Default for Mask<O, D, P> {
+    fn default() -> Self {
+        Self {
+            area: None,
+            clear: Arc::default(),
+        }
+    }
+}
+
+impl<O: Clone, const D: usize, P: Outlined<D>> Mask<O, D, P> {
+    /// This mask with another set to keep clear of.
+    pub(crate) fn and_clear_of(mut self, other: ClearOf<O>) -> Self {
+        self.clear = self.clear.iter().cloned().chain([other]).collect();
+        self
+    }
+
+    /// This mask limited to an area.
+    pub(crate) fn and_within(mut self, area: Shape<D, P>) -> Self {
+        self.area = Some(Arc::new(self.narrowed(&area)));
+        self
+    }
+
+    /// The part of an area in which points may be.
+    pub(crate) fn narrowed(&self, area: &Shape<D, P>) -> Shape<D, P> {
+        match &self.area {
+            Some(own) => (**own).clone().and(area.clone()),
+            None => area.clone(),
+        }
+    }
+
+    /// Whether this and another mask are made of the same parts.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let is_within = alike(&self.area, &other.area, Arc::ptr_eq);
+        let is_alone = self.clear.is_empty() && other.clear.is_empty();
+        is_within && (is_alone || Arc::ptr_eq(&self.clear, &other.clear))
+    }
+
+    /// Whether it leaves all points.
+    pub(crate) fn is_none(&self) -> bool {
+        self.area.is_none() && self.clear.is_empty()
+    }
 }
 
 impl Mask {
@@ -46,24 +81,14 @@ impl Mask {
             clear: RefCell::new(Clear::new(clear, within, Stop::default())),
         }
     }
+}
 
-    /// This mask with another set to keep clear of.
-    pub(crate) fn and_clear_of(mut self, other: ClearOf<Other>) -> Self {
-        self.clear = self.clear.iter().cloned().chain([other]).collect();
-        self
-    }
-
-    /// This mask limited to an area.
-    pub(crate) fn and_within(self, area: Area) -> Self {
-        let area = match self.area {
-            Some(own) => own.and(area),
-            None => area,
-        };
-        Self {
-            area: Some(area),
-            clear: self.clear,
-        }
-    }
+/// A set of the plane that others keep clear of.
+#[derive(Clone, Debug)]
+pub(crate) struct Other {
+    lattice: Lattice,
+    mask: Mask,
+    scratch: Scratch,
 }
 
 impl Other {
@@ -123,12 +148,7 @@ impl OtherSet<2> for Other {
     }
 
     fn is_same(&self, other: &Self) -> bool {
-        let (own, masked) = (&self.mask, &other.mask);
-        let is_alone = own.clear.is_empty() && masked.clear.is_empty();
-        let is_within = own.area.is_none() && masked.area.is_none();
-        is_within
-            && (is_alone || Arc::ptr_eq(&own.clear, &masked.clear))
-            && self.lattice.is_same(&other.lattice)
+        self.mask.is_same(&other.mask) && self.lattice.is_same(&other.lattice)
     }
 
     fn clear(&self) -> &[ClearOf<Self>] {
@@ -136,7 +156,7 @@ impl OtherSet<2> for Other {
     }
 
     fn limit(&self) -> f64 {
-        limit(&self.lattice)
+        Density::of(&self.lattice).limit
     }
 
     fn visit(&mut self, within: &Region, _: &Stop, mut each: impl FnMut([f64; 2]) -> bool) {
@@ -162,7 +182,7 @@ impl OtherSet<2> for Other {
 /// Tests places against a mask. Not shared between threads: it keeps memory from place to place.
 #[derive(Clone, Debug)]
 pub(crate) struct Guard {
-    area: Option<Area>,
+    area: Option<Arc<Area>>,
     clear: RefCell<Clear<Other, 2>>,
 }
 
@@ -224,8 +244,9 @@ impl Clearance {
     /// Refuses a distance within which too many points of a lattice lie.
     fn check(lattice: &Lattice, distance: f64) -> Result<(), Error> {
         check_radius(distance)?;
-        check_number(lattice, distance, 1.0, Self::MAX_CANDIDATES)?;
-        check_work(lattice, distance, 4 * Self::MAX_CANDIDATES)
+        let density = Density::of(lattice);
+        density.check_number(distance, 1.0, Self::MAX_CANDIDATES)?;
+        density.check_work(distance, 4 * Self::MAX_CANDIDATES)
     }
 
     /// The distance that is tested, in world units.
@@ -247,7 +268,9 @@ impl Clearance {
             distance,
             scratch,
         } = self;
-        if check_place(at).is_err() || check_reach(limit(lattice), at, *distance).is_err() {
+        if check_place(at).is_err()
+            || check_reach(Density::of(lattice).limit, at, *distance).is_err()
+        {
             return false;
         }
         let squared = *distance * *distance;

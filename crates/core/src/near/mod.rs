@@ -8,10 +8,11 @@
 pub(crate) mod clear;
 pub(crate) mod limits;
 mod mask;
-mod scan;
+pub(super) mod scan;
 pub(super) mod search;
 mod tile;
 
 pub use limits::Visits;
 pub use mask::Clearance;
 pub(super) use mask::{Guard, Mask, Other};
+pub use search::Neighbor;

@@ -21,7 +21,7 @@ use crate::{
 
 /// Memory that [`scan`] reuses: the columns near a place, by class.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     columns: [Vec<NearColumn>; 4],
     settled: Option<Box<SettledTiles>>,
 }
@@ -36,7 +36,7 @@ struct NearColumn {
 /// Calls `visit` with the squared distance of every point whose reported coordinates lie within `radius`
 /// of `at`, and of some farther ones, until it or a flag breaks. `at` and the disk around it lie within the
 /// lattice's limit.
-pub(super) fn scan(
+pub(crate) fn scan(
     lattice: &Lattice,
     scratch: &mut Scratch,
     at: [f64; 2],

@@ -1,12 +1,12 @@
 //! Members, points that know their attributes, and the iterator over those of a plan.
 
 use alloc::{boxed::Box, vec, vec::Vec};
-use core::{iter::FusedIterator, ops::RangeInclusive};
+use core::{fmt::Debug, iter::FusedIterator, ops::RangeInclusive};
 
 use crate::{
     attribute::{
         Attribute, Variants,
-        hash::{angle, between, hash, key, unit},
+        hash::{Hashed, angle, between, hash, key, unit},
     },
     kernel::Points,
     lattice::{Point, PointId, seed::Seed},
@@ -33,38 +33,26 @@ use crate::{
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Member {
-    point: Point,
+pub struct Member<Id: Hashed = PointId> {
+    point: Id::Point,
     seed: Seed,
 }
 
-impl Member {
-    pub(crate) const fn new(point: Point, seed: Seed) -> Self {
+impl<Id: Hashed> Member<Id> {
+    pub(crate) const fn new(point: Id::Point, seed: Seed) -> Self {
         Self { point, seed }
     }
 
     /// The stable id, which finds the point again in the same set.
     #[must_use]
-    pub const fn id(&self) -> PointId {
-        self.point.id
-    }
-
-    /// The place, in world coordinates.
-    #[must_use]
-    pub const fn at(&self) -> [f64; 2] {
-        self.point.at()
+    pub fn id(&self) -> Id {
+        Id::of(&self.point)
     }
 
     /// Id and coordinates.
     #[must_use]
-    pub const fn point(&self) -> Point {
+    pub const fn point(&self) -> Id::Point {
         self.point
-    }
-
-    /// The attribute `angle`: a rotation in radians, uniform in [0, 2π).
-    #[must_use]
-    pub fn angle(&self) -> f64 {
-        angle(self.hash(Attribute::ANGLE))
     }
 
     /// The attribute `scale`: a factor, uniform in a range, both ends included. An empty range returns its
@@ -89,14 +77,48 @@ impl Member {
         unit(self.hash(Attribute::uniform_code(n)))
     }
 
+    pub(crate) const fn seed(&self) -> Seed {
+        self.seed
+    }
+
     fn hash(&self, code: u64) -> u64 {
-        hash(key(self.seed, code), self.point.id)
+        hash(key(self.seed, code), self.id())
+    }
+}
+
+impl Member {
+    /// The place, in world coordinates.
+    #[must_use]
+    pub const fn at(&self) -> [f64; 2] {
+        self.point.at()
+    }
+
+    /// The attribute `angle`: a rotation in radians, uniform in [0, 2π).
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        angle(self.hash(Attribute::ANGLE))
     }
 }
 
 impl From<Member> for Point {
     fn from(member: Member) -> Self {
         member.point
+    }
+}
+
+/// The ids of points that plans make block by block, in the plane or in space.
+pub trait Made: Hashed {
+    /// The points of a plan.
+    type Blocks: Clone + Debug;
+    /// Makes the next points, as many as there is room for but at the end, and returns their number.
+    fn fill(blocks: &mut Self::Blocks, points: &mut [Self::Point]) -> usize;
+}
+
+impl Made for PointId {
+    type Blocks = Blocks<Points>;
+
+    fn fill(blocks: &mut Self::Blocks, points: &mut [Point]) -> usize {
+        blocks.fill(points)
     }
 }
 
@@ -117,10 +139,10 @@ impl From<Member> for Point {
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Members {
+pub struct Members<Id: Made = PointId> {
     /// On the heap, so that making a block does not take the address of the iterator: its other fields
     /// stay in registers.
-    source: Box<Source>,
+    source: Box<Source<Id>>,
     /// The place of the next point in the block, and the end of the points there.
     next: usize,
     end: usize,
@@ -129,9 +151,9 @@ pub struct Members {
 
 /// Makes blocks of points.
 #[derive(Clone, Debug)]
-struct Source {
-    blocks: Blocks<Points>,
-    block: Vec<Point>,
+struct Source<Id: Made> {
+    blocks: Id::Blocks,
+    block: Vec<Id::Point>,
     /// The number of points after the block.
     left: u128,
 }
@@ -139,24 +161,24 @@ struct Source {
 /// The number of points made at once: 32 KiB, as fast memory holds.
 const BLOCK: usize = 1024;
 
-impl Source {
+impl<Id: Made> Source<Id> {
     /// Makes the next block. Returns the number of its points.
     #[cold]
     #[inline(never)]
     fn refill(&mut self) -> usize {
-        let filled = self.blocks.fill(&mut self.block);
+        let filled = Id::fill(&mut self.blocks, &mut self.block);
         self.left -= filled as u128;
         filled
     }
 }
 
-impl Members {
-    pub(crate) fn new(blocks: Blocks<Points>, count: u128, seed: Seed) -> Self {
+impl<Id: Made> Members<Id> {
+    pub(crate) fn new(blocks: Id::Blocks, count: u128, seed: Seed) -> Self {
         let length = usize::try_from(count).unwrap_or(BLOCK).min(BLOCK);
         Self {
             source: Box::new(Source {
                 blocks,
-                block: vec![Point::default(); length],
+                block: vec![Id::Point::default(); length],
                 left: count,
             }),
             next: 0,
@@ -166,11 +188,11 @@ impl Members {
     }
 }
 
-impl Iterator for Members {
-    type Item = Member;
+impl<Id: Made> Iterator for Members<Id> {
+    type Item = Member<Id>;
 
     #[inline]
-    fn next(&mut self) -> Option<Member> {
+    fn next(&mut self) -> Option<Member<Id>> {
         if self.next == self.end {
             self.end = self.source.refill();
             self.next = 0;
@@ -191,7 +213,7 @@ impl Iterator for Members {
         }
     }
 
-    fn fold<B, F: FnMut(B, Member) -> B>(mut self, init: B, mut f: F) -> B {
+    fn fold<B, F: FnMut(B, Member<Id>) -> B>(mut self, init: B, mut f: F) -> B {
         let mut value = init;
         loop {
             for &point in &self.source.block[self.next..self.end] {
@@ -205,6 +227,6 @@ impl Iterator for Members {
     }
 }
 
-impl ExactSizeIterator for Members {}
+impl<Id: Made> ExactSizeIterator for Members<Id> {}
 
-impl FusedIterator for Members {}
+impl<Id: Made> FusedIterator for Members<Id> {}

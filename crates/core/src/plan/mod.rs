@@ -150,7 +150,10 @@ impl Plan {
         let mut mask = sieve
             .as_ref()
             .map_or_else(Mask::default, |sieve| sieve.mask().clone());
-        let area = mask.area.take().unwrap_or(Area::Region(*region));
+        let area = mask
+            .area
+            .take()
+            .map_or(Area::Region(*region), Arc::unwrap_or_clone);
         Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
     }
 

@@ -1,15 +1,21 @@
 //! Single points of a set: by id and near a place, with the values they have.
 
 use alloc::{sync::Arc, vec::Vec};
+use core::ops::ControlFlow;
 
 use super::PointSet;
 use crate::{
     LeastDistance,
     attribute::{Attributes, BoundAttributes},
     error::Error,
-    lattice::{Placement, Point, PointId},
+    lattice::{Placement, Point, PointId, seed::Seed},
     methods::requested,
-    near::{Clearance, Other, Visits, limits, search},
+    near::{
+        Clearance, Neighbor, Other, Visits,
+        limits::{self, Density},
+        scan::{Scratch, scan},
+        search::{self, Searched},
+    },
     pattern::Arrangement,
     plan::{Plan, member::Member},
     settle::{Settler, weight},
@@ -17,26 +23,6 @@ use crate::{
     stop::Stop,
     window::Cursor,
 };
-
-/// A point of a set near a place, and its distance.
-///
-/// ```
-/// use strew_core::{Neighbor, PointSet, Table};
-///
-/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let set = PointSet::new(table).seed(7);
-/// let Neighbor { member, distance } = set.nearest([10.0, 3.0], 1)?[0];
-/// let [dx, dy] = [member.at()[0] - 10.0, member.at()[1] - 3.0];
-/// assert_eq!(distance, (dx * dx + dy * dy).sqrt());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbor {
-    /// The point.
-    pub member: Member,
-    /// The distance from the place, in world units.
-    pub distance: f64,
-}
 
 requested!(
     #[cfg(feature = "clearance")]
@@ -62,8 +48,7 @@ impl PointSet {
             }
             None => self.lattice.point(id)?,
         };
-        let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
-        (is_plain || self.mask.guard(None).permits(point.at()))
+        (self.mask.is_none() || self.mask.guard(None).permits(point.at()))
             .then(|| Member::new(point, self.placement().seed))
     }
 
@@ -94,59 +79,6 @@ impl PointSet {
     #[must_use]
     pub fn share(&self, id: PointId) -> Option<f64> {
         self.lattice.share_of(id)
-    }
-
-    /// All points within `radius` of a place, nearest first; of equally near ones the smaller id first. A point lies within
-    /// if its reported [distance](Neighbor::distance), √(dx·dx + dy·dy) in `f64`, is at most the radius.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,
-    /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if more than `limit` points lie within it (at most
-    /// [`MAX_CANDIDATES`](Self::MAX_CANDIDATES)), and as [`nearest`](Self::nearest).
-    pub fn around(&self, at: [f64; 2], radius: f64, limit: usize) -> Result<Vec<Neighbor>, Error> {
-        self.around_visiting(at, radius, limit, &Visits::any())
-    }
-
-    /// [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, which visits a bounded
-    /// number of points.
-    ///
-    /// # Errors
-    /// As those, [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited, and
-    /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
-    pub fn nearest_visiting(
-        &self,
-        at: [f64; 2],
-        k: usize,
-        radius: Option<f64>,
-        visits: &Visits,
-    ) -> Result<Vec<Neighbor>, Error> {
-        let found = search::nearest(&self.lattice, &self.mask, at, k, radius, visits)?;
-        Ok(self.neighbors(found))
-    }
-
-    /// [`around`](Self::around), which visits a bounded number of points.
-    ///
-    /// # Errors
-    /// As [`nearest_visiting`](Self::nearest_visiting).
-    pub fn around_visiting(
-        &self,
-        at: [f64; 2],
-        radius: f64,
-        limit: usize,
-        visits: &Visits,
-    ) -> Result<Vec<Neighbor>, Error> {
-        let limit = limit.min(Self::MAX_CANDIDATES);
-        let found = search::within(&self.lattice, &self.mask, at, radius, limit, visits)?;
-        Ok(self.neighbors(found))
-    }
-
-    fn neighbors(&self, found: Vec<search::Found>) -> Vec<Neighbor> {
-        let seed = self.placement().seed;
-        let neighbor = |(squared, point)| Neighbor {
-            member: Member::new(point, seed),
-            distance: libm::sqrt(squared),
-        };
-        found.into_iter().map(neighbor).collect()
     }
 
     /// A test whether any point lies nearer than `distance` to a place, for many places.
@@ -252,10 +184,43 @@ impl PointSet {
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         self.lattice.attributes(attributes)
     }
+}
 
-    /// The largest absolute coordinate that a search may reach, in world units.
-    #[must_use]
-    pub fn search_limit(&self) -> f64 {
-        limits::limit(&self.lattice)
+impl Searched<2> for PointSet {
+    type Id = PointId;
+
+    fn seed(&self) -> Seed {
+        self.placement().seed
+    }
+
+    fn density(&self) -> Density<2> {
+        Density::of(&self.lattice)
+    }
+
+    fn scan(
+        &self,
+        at: [f64; 2],
+        radius: f64,
+        farthest: f64,
+        visits: &Visits,
+        mut found: impl FnMut(f64, Point),
+    ) -> ControlFlow<()> {
+        let around = Region::between(at.map(|v| v - radius), at.map(|v| v + radius));
+        let guard = self.mask.guard(Some(&around));
+        let mut scratch = Scratch::default();
+        let visits = Some(visits);
+        scan(
+            &self.lattice,
+            &mut scratch,
+            at,
+            radius,
+            visits,
+            |d, point| {
+                if d <= farthest && guard.permits(point.at()) {
+                    found(d, point);
+                }
+                ControlFlow::Continue(())
+            },
+        )
     }
 }

@@ -7,7 +7,6 @@
 mod kinds;
 mod lookups;
 pub use kinds::Kind;
-pub use lookups::Neighbor;
 
 use alloc::sync::Arc;
 
@@ -199,11 +198,10 @@ impl PointSet {
         stop: &Stop,
     ) -> Result<Plan, Error> {
         let area = area.into();
-        let within = self.mask.clone().and_within(area.clone()).area;
         let grade = self.lattice.grade.as_ref();
         let sought = Sought {
             count,
-            bounds: within.as_ref().and_then(Area::bounds),
+            bounds: self.mask.narrowed(&area).bounds(),
             least,
             grade,
             share: match grade {

@@ -6,8 +6,9 @@
 use alloc::sync::Arc;
 
 use super::{
+    Member,
     lattice::Lattice,
-    plan::Plan,
+    plan::{Blocks, Plan},
     point::{Point, PointId},
     set::SpaceSet,
 };
@@ -15,10 +16,12 @@ use crate::{
     Attribute, Attributes,
     attribute::{
         Indices,
-        hash::{Hashed, of_row},
+        hash::{Hashed, of_row, rotation, turns},
     },
     error::Error,
+    kernel::Points,
     lattice::seed::split_mix,
+    plan::member::Made,
 };
 
 /// The attributes of the points of one set in space.
@@ -60,6 +63,34 @@ impl Hashed for PointId {
     #[inline]
     fn column(self) -> i64 {
         self.x
+    }
+}
+
+impl Made for PointId {
+    type Blocks = Blocks<Points>;
+
+    fn fill(blocks: &mut Self::Blocks, points: &mut [Point]) -> usize {
+        blocks.fill(points)
+    }
+}
+
+impl Member {
+    /// The place, in world coordinates.
+    #[must_use]
+    pub const fn at(&self) -> [f64; 3] {
+        self.point().at()
+    }
+
+    /// The attribute `rotation`: a uniform rotation, as a unit quaternion x, y, z, w.
+    #[must_use]
+    pub fn rotation(&self) -> [f64; 4] {
+        rotation(turns(self.seed()), self.id())
+    }
+}
+
+impl From<Member> for Point {
+    fn from(member: Member) -> Self {
+        member.point()
     }
 }
 

@@ -76,9 +76,20 @@ impl OtherSet<3> for Other {
         let limit = self.lattice.limit();
         let [min, max] = [region.min(), region.max()].map(|v| v.map(|v| v.clamp(-limit, limit)));
         let region = Region::between(min, max);
-        let Some(mask) = self.mask.of_itself().focused(&region) else {
-            return;
+        // The part of the mask that other sets do not decide, as it matters in the box.
+        let mut mask = Mask {
+            area: self.mask.area.clone(),
+            clear: Arc::default(),
         };
+        // Reported coordinates do not decide about chunks.
+        if let Some(area) = (self.mask.area.as_ref()).filter(|area| area.chunks().is_empty()) {
+            let near = area.focus(&region);
+            match near.is_all_or_nothing() {
+                Some(false) => return,
+                Some(true) => mask.area = None,
+                None => mask.area = Some(Arc::new(near)),
+            }
+        }
         let volume = Volume::Region(region);
         // Beyond the limit there are no points.
         let Ok(scope) = Scope::new(&self.lattice, &mask, &volume, stop.clone()) else {

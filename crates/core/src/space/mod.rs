@@ -37,9 +37,8 @@ mod warp;
 pub use attributes::BoundAttributes;
 pub use format::Format;
 pub use lattice::LATTICE_LIMIT;
-pub use nearest::Neighbor;
 pub use pattern::Pattern;
-pub use plan::{Blocks, Members, Plan};
+pub use plan::{Blocks, Plan};
 pub use point::{Point, PointId};
 pub use set::SpaceSet;
 #[cfg(feature = "tables")]
@@ -54,6 +53,12 @@ pub use crate::{
 
 /// Points with their addresses, relative to an origin.
 type Batch = crate::batch::Batch<3, [i32; 3]>;
+/// A point of a set, which knows its attributes.
+pub type Member = crate::Member<PointId>;
+/// The points of a plan, one by one, in order.
+pub type Members = crate::Members<PointId>;
+/// A point of a set near a place, and its distance.
+pub type Neighbor = crate::Neighbor<PointId>;
 /// A place in the order of a request's points.
 pub type Cursor = crate::Cursor<PointId>;
 /// A half-open box in world coordinates.

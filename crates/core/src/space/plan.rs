@@ -4,13 +4,13 @@ use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::{marker::PhantomData, ops::Range};
 
 use super::{
-    Batch, Cursor, Region, Volume,
+    Batch, Cursor, Members, Point, Region, Volume,
     clearance::AnyWalk,
     count,
     format::{Format, write},
     lattice::Lattice,
     mask::Mask,
-    point::{Point, PointId},
+    point::PointId,
     scope::Scope,
     table::Table,
     walk::Rows,
@@ -98,7 +98,7 @@ impl Plan {
     /// The points, one by one.
     #[must_use]
     pub fn iter(&self) -> Members {
-        Members::new(self.blocks())
+        Members::new(self.blocks(), self.window.count, self.placement().seed)
     }
 
     /// The plan with a flag that stops counting and making points, in place of the one it had. Once it is raised, blocks
@@ -345,60 +345,5 @@ impl Blocks<Points> {
             total: self.total,
             at: PointId::of(at?),
         })
-    }
-}
-
-/// The points of a plan, one by one.
-///
-/// ```
-/// use strew_core::space::{SpaceSet, Table};
-///
-/// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-/// let lowest = plan.iter().map(|point| point.z).reduce(f64::min);
-/// assert!(lowest.is_some_and(|z| z < 1.0));
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct Members {
-    blocks: Blocks<Points>,
-    block: Vec<Point>,
-    next: usize,
-}
-
-impl Members {
-    pub(super) fn new(blocks: Blocks<Points>) -> Self {
-        Self {
-            blocks,
-            block: Vec::new(),
-            next: 0,
-        }
-    }
-}
-
-impl Iterator for Members {
-    type Item = Point;
-
-    fn next(&mut self) -> Option<Point> {
-        /// The number of points that are made together.
-        const AT_ONCE: usize = 256;
-        if self.next == self.block.len() {
-            let mut block = core::mem::take(&mut self.block);
-            let most = usize::try_from(self.blocks.left)
-                .unwrap_or(usize::MAX)
-                .min(AT_ONCE);
-            block.clear();
-            block.extend(vec![Point::default(); most]);
-            let filled = self.blocks.fill(&mut block);
-            block.truncate(filled);
-            (self.block, self.next) = (block, 0);
-        }
-        let point = self.block.get(self.next).copied()?;
-        self.next += 1;
-        Some(point)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.blocks.left + (self.block.len() - self.next) as u128;
-        (0, usize::try_from(left).ok())
     }
 }

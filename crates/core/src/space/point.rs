@@ -33,7 +33,7 @@ pub struct PointId {
 /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
 /// let Point { id, x, .. } = set.chunk(8.0, [0, 0, 0])?.to_vec()[0];
 /// assert!((0.0..8.0).contains(&x));
-/// assert_eq!(set.point(id).map(|point| point.x), Some(x));
+/// assert_eq!(set.point(id).map(|point| point.point().x), Some(x));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,12 +3,11 @@
 use alloc::{sync::Arc, vec::Vec};
 
 use super::{
-    Cursor, Region, Volume, clearance,
+    Cursor, Member, Neighbor, Region, Volume, clearance,
     lattice::Lattice,
     mask::{Mask, Other},
-    nearest::{self, Neighbor},
     plan::Plan,
-    point::{Point, PointId},
+    point::PointId,
     table::Table,
 };
 use crate::{
@@ -16,7 +15,10 @@ use crate::{
     error::Error,
     lattice::{Keep, Placement, Spacing, seed::Seed},
     methods::{placing, requested},
-    near::{Visits, limits},
+    near::{
+        Visits, limits,
+        search::{self, Searched},
+    },
     plan::amount::{Sought, exactly},
     stop::Stop,
     warp::Warp,
@@ -36,14 +38,14 @@ use crate::{field::Field, lattice::Grade};
 #[cfg_attr(feature = "tables", doc = "```")]
 #[cfg_attr(not(feature = "tables"), doc = "```ignore")]
 /// use strew_core::space::SpaceSet;
-/// # fn spawn(_: strew_core::space::PointId, _: [f64; 3]) {}
+/// # fn spawn(_: strew_core::space::PointId, _: [f64; 3], _: [f64; 4]) {}
 ///
 /// let rocks = SpaceSet::blue().spacing(4.0)?.seed(7);
 /// for p in rocks.chunk(32.0, [3, -2, 0])? {
-///     spawn(p.id, p.at());
+///     spawn(p.id(), p.at(), p.rotation());
 /// }
 /// let near = rocks.nearest([10.0, 3.0, 5.0], 5)?;
-/// assert_eq!(rocks.point(near[0].point.id), Some(near[0].point));
+/// assert_eq!(rocks.point(near[0].member.id()), Some(near[0].member));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -93,7 +95,7 @@ impl SpaceSet {
     /// let droplets = set.in_field(FieldSpec::multiply(vec![cloud, patches])?);
     /// let plan = droplets.chunk(32.0, [0, 0, 0])?;
     /// assert!((1000..5000).contains(&plan.count()));
-    /// assert!(plan.iter().all(|point| droplets.point(point.id) == Some(point)));
+    /// assert!(plan.iter().all(|point| droplets.point(point.id()) == Some(point)));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[cfg(feature = "fields")]
@@ -207,28 +209,14 @@ placing!(
 impl SpaceSet {
     /// The point of an id, or `None` if the set has none there.
     #[must_use]
-    pub fn point(&self, id: PointId) -> Option<Point> {
-        clearance::point(&self.lattice, &self.mask, id)
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        let point = clearance::point(&self.lattice, &self.mask, id)?;
+        Some(Member::new(point, self.placement().seed))
     }
 
     /// The intervals of the three indices of a point, or `None` if the lattice has no point there.
     #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 3]> {
         self.lattice.block(id)
-    }
-
-    /// Runs [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, until a flag is
-    /// raised, and counts the points that are visited.
-    ///
-    /// # Errors
-    /// As these, and [`Stopped`](crate::ErrorKind::Stopped).
-    pub fn nearest_visiting(
-        &self,
-        at: [f64; 3],
-        k: usize,
-        radius: Option<f64>,
-        visits: &Visits,
-    ) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(&self.lattice, &self.mask, at, k, radius, visits)
     }
 }

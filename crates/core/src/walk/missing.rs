@@ -6,11 +6,14 @@
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use crate::lattice::{BAND_WIDTH, PointId};
+use crate::{
+    lattice::{BAND_WIDTH, PointId},
+    sort,
+};
 
 /// Points in the order of their scope.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Missing(Arc<[PointId]>);
+pub(crate) struct Missing(pub(super) Arc<[PointId]>);
 
 /// The place of an address in the order.
 const fn order(id: &PointId) -> (i64, i64, i64) {
@@ -20,14 +23,9 @@ const fn order(id: &PointId) -> (i64, i64, i64) {
 impl Missing {
     /// Some points, in any order, several of which may be the same.
     pub(super) fn in_order(mut ids: Vec<PointId>) -> Vec<PointId> {
-        ids.sort_unstable_by_key(order);
+        sort::by_key(&mut ids, order);
         ids.dedup();
         ids
-    }
-
-    /// Some points, which are in order.
-    pub(super) fn new(ids: Vec<PointId>) -> Self {
-        Self(ids.into())
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -64,7 +62,7 @@ impl Missing {
     /// The columns of those in some rows of the band of a column, each once.
     pub(super) fn columns(&self, x: i64, rows: &Range<i64>) -> Vec<i64> {
         let mut at: Vec<i64> = self.in_band(x, rows).iter().map(|id| id.x).collect();
-        at.sort_unstable();
+        sort::by_key(&mut at, |&x| x);
         at.dedup();
         at
     }

@@ -77,17 +77,14 @@ impl Scope {
         area: Area,
         stop: Stop,
     ) -> Result<Self, Error> {
-        let mask = mask.clone().and_within(area);
-        let area = mask.area.as_ref();
-        let region = area.and_then(Area::bounds).ok_or_else(|| {
+        let area = mask.narrowed(&area);
+        let region = area.bounds().ok_or_else(|| {
             let (field, value) = ("area", "unbounded");
             Error::new(ErrorKind::Unbounded, field, value, "within a box")
         })?;
         let limit = lattice.limit();
         check_limit(&region, limit)?;
-        let (chunks, rest) = area.map_or_else(Default::default, |area| {
-            (area.chunks(), area.beside_chunks())
-        });
+        let (chunks, rest) = (area.chunks(), area.beside_chunks());
         let around_rest = rest.as_ref().and_then(Area::bounds);
         let bounds = bounds((lattice.step, limit), &chunks, around_rest);
         let corner = Corner::new(lattice.step, &chunks, &region, &bounds);
@@ -101,8 +98,10 @@ impl Scope {
         let stay = |share| lattice.is_in_field() && (share <= 0.0 || share >= 1.0);
         let share = share.filter(|&share| lattice.settle().is_none() || stay(share));
         if let Some(share) = share {
-            let area = area.cloned().unwrap_or(Area::Region(region));
-            let mask = Mask { area: None, ..mask };
+            let mask = Mask {
+                area: None,
+                clear: mask.clear.clone(),
+            };
             return Ok(Self {
                 in_field: Some(lattice.clone()),
                 ..Self::new(&lattice.in_constant(share), &mask, area, stop)?
@@ -114,8 +113,10 @@ impl Scope {
         let sieve = if is_box && mask.clear.is_empty() && !lattice.picks() {
             None
         } else {
-            let area = area.map(around_chunks);
-            let mask = Mask { area, ..mask };
+            let mask = Mask {
+                area: Some(around_chunks(&area).into()),
+                clear: mask.clear.clone(),
+            };
             Some(Sieve::new(lattice, (mask, region), [x.reach, y.reach]))
         };
         let mut scope = Self {
@@ -171,7 +172,7 @@ impl Scope {
             let area = sieve.and_then(Sieve::area);
             self.keep_inside((local.as_ref(), area), &all, &mut found);
         }
-        Missing::new(found)
+        Missing(found.into())
     }
 
     /// Adds those of some ids, in order, whose points lie inside: the sieve's, and in what of its area matters to them.

@@ -375,7 +375,7 @@ impl Sieve {
     }
 
     /// The area in which points lie, if not in all of the box.
-    pub(crate) const fn area(&self) -> Option<&Area> {
-        self.mask.area.as_ref()
+    pub(crate) fn area(&self) -> Option<&Area> {
+        self.mask.area.as_deref()
     }
 }

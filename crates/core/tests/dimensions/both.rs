@@ -154,7 +154,7 @@ proptest! {
         agree_in_boxes(&clear, &expected, cut(region, &cuts));
         if let Some(first) = expected.first() {
             let nearest = clear.nearest(first.at(), 1).expect("near");
-            prop_assert_eq!(found(&nearest[0]), *first);
+            prop_assert_eq!(nearest[0].member.point(), *first);
         }
     }
 }
@@ -186,7 +186,7 @@ proptest! {
         // Whatever keeps clear of a set keeps clear of what is left of it.
         if let Some(last) = expected.last() {
             let near = left.nearest(last.at(), 1).expect("near");
-            prop_assert_eq!(found(&near[0]), *last);
+            prop_assert_eq!(near[0].member.point(), *last);
             let others = set.settle(0).expect("few").seed(9).clear_of(&left, 1.0).expect("near");
             let region = cube(last.at().map(|v| v - 3.0), 6.0);
             let all = within(&others.clone(), region);

@@ -232,7 +232,7 @@ fn wide_boxes_outlast_the_templates_that_are_kept() {
     let plan = set.within(wide).expect("near");
     let mut points = 0;
     for point in plan.iter() {
-        assert_eq!(set.point(point.id), Some(point));
+        assert_eq!(set.point(point.id()), Some(point));
         points += 1;
     }
     assert_eq!(points, plan.count());
@@ -264,7 +264,7 @@ fn golden_vectors() {
         let set = set.keep(share).expect("in range");
         let plan = set.chunk(40.0, [3, -2, 1]).expect("near");
         let mut sum = plan.count() as u64;
-        for point in &plan {
+        for point in plan.to_vec() {
             for word in [point.id.x as u64, point.id.y as u64, point.id.z as u64] {
                 sum = sum.rotate_left(9).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ word;
             }

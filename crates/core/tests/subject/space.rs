@@ -47,10 +47,6 @@ pub fn order(id: PointId) -> impl Ord {
     (id.x >> 10, id.y >> 10, id.z, id.y, id.x)
 }
 
-pub fn found(neighbor: &Neighbor) -> Point {
-    neighbor.point
-}
-
 /// Many places are found at once, and offsets in f32 are near.
 pub fn agree_otherwise(plan: &Plan, points: &[Point], parts: Parts) {
     let numbers: Vec<u128> = (0..u128::from(parts.number)).map(|i| i * i * 37).collect();

@@ -1,9 +1,7 @@
 //! Every way to the points of a set agrees. This file is a module of the plane and one of space.
 
-#![allow(clippy::useless_conversion, reason = "points of space are their own")]
-
 use proptest::prelude::*;
-use strew_core::{Backend, F32, F64, Points};
+use strew_core::{Backend, ErrorKind, F32, F64, Points};
 
 use super::*;
 
@@ -126,6 +124,10 @@ pub fn agree(set: &Set, area: impl Into<Area>, points: &[Point], parts: Parts) {
     assert_eq!(plan.to_vec(), points);
     assert!(plan.iter().map(Point::from).eq(points.iter().copied()));
     assert_eq!(plan.iter().fold(0, |n, _| n + 1), points.len());
+    let mut members = plan.iter();
+    for left in (0..points.len()).rev().take(100) {
+        assert_eq!((members.next().is_some(), members.len()), (true, left));
+    }
     let places: Vec<[f64; D]> = points.iter().map(Point::at).collect();
     let singles = all_by::<F32>(&plan, 99, Backend::Scalar);
     for backend in Backend::available() {
@@ -235,9 +237,8 @@ pub fn agree_in_number(set: &Set, area: &Area, count: u128) {
 
 /// The nearest points of a place are those of boxes around it, in the order of distances and ids.
 pub fn agree_near(set: &Set, at: [f64; D], k: usize, part: f64) {
-    let pairs = |near: Vec<Neighbor>| -> Vec<(Point, f64)> {
-        near.iter().map(|n| (found(n), n.distance)).collect()
-    };
+    let pair = |n: &Neighbor| (n.member.point(), n.distance);
+    let pairs = |near: Vec<Neighbor>| near.iter().map(pair).collect::<Vec<_>>();
     let nearest = pairs(set.nearest(at, k).expect("near"));
     assert_eq!(nearest.len(), k);
     let farthest = nearest.last().map_or(0.0, |near| near.1);
@@ -250,8 +251,14 @@ pub fn agree_near(set: &Set, at: [f64; D], k: usize, part: f64) {
     assert_eq!(nearest, all);
     // Within a radius there may be fewer. That of the farthest, as it is reported, finds all.
     let radius = farthest * part;
-    let mut fewer = by_distance(radius.min(farthest));
+    let mut fewer = by_distance(radius);
     fewer.retain(|(_, distance)| *distance <= radius);
+    let number = fewer.len();
+    assert_eq!(set.around(at, radius, number).map(pairs), Ok(fewer.clone()));
+    if number > 0 {
+        let refused = set.around(at, radius, number - 1).expect_err("too many");
+        assert_eq!(refused.kind(), ErrorKind::TooMany);
+    }
     fewer.truncate(k);
     assert_eq!(set.nearest_within(at, k, radius).map(pairs), Ok(fewer));
 }

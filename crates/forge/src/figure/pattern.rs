@@ -161,11 +161,8 @@ const DARK: Color = [203, 214, 226];
 /// the points of one block, given as its intervals of dX and dY; and the number of intervals against R.
 pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, FigureError> {
     if !(1..=200).contains(&radius) {
-        return Err(FigureError::new(
-            "radius",
-            radius,
-            "an integer from 1 to 200 grid units",
-        ));
+        let allowed = "an integer from 1 to 200 grid units";
+        return Err(FigureError::new("radius", radius, allowed));
     }
     let (fine, coarse) = (Map::new(alpha, radius)?, Map::new(alpha, radius / 2)?);
     // Intervals that only the rounding of a fraction α makes are too narrow to see or to hold points.
@@ -178,11 +175,8 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     let (intervals, parents) = (visible(&fine), visible(&coarse));
     let n = intervals.len();
     if block.iter().any(|&i| i >= n) {
-        return Err(FigureError::new(
-            "block",
-            format!("{block:?}"),
-            format!("two integers from 0 to {}", n - 1),
-        ));
+        let allowed = format!("two integers from 0 to {}", n - 1);
+        return Err(FigureError::new("block", format!("{block:?}"), allowed));
     }
     let t = alpha.set_side_f64();
     let mut drawing = sheet(3, 2);

@@ -50,18 +50,16 @@ impl Mask {
 
     /// The mask of a table and a seed, `size` pixels wide and high.
     pub fn new(table: &Table, size: u32, seed: u64) -> Result<Self, MaskError> {
-        let Some(mask) = Self::new_while(table, size, seed, || true)? else {
-            unreachable!("nothing stops it");
-        };
-        Ok(mask)
+        let mask = Self::new_while(table, size, seed, |_| true)?;
+        Ok(mask.unwrap_or_else(|| unreachable!("nothing stops it")))
     }
 
-    /// As [`Mask::new`], while `goes_on` returns true: it is called every thousand pixels. `None` if it was stopped.
+    /// As [`Mask::new`], while `goes_on` returns true, which is called with the number of pixels that come next, or `None`.
     pub fn new_while(
         table: &Table,
         size: u32,
         seed: u64,
-        mut goes_on: impl FnMut() -> bool,
+        mut goes_on: impl FnMut(usize) -> bool,
     ) -> Result<Option<Self>, MaskError> {
         /// A few milliseconds of work.
         const STEP: usize = 1000;
@@ -76,33 +74,32 @@ impl Mask {
         let first = first(table, size, seed)?;
         let few = pixels / FEW;
         let mut ranks = vec![0; pixels];
-        let mut goes_on = |rank: usize| !rank.is_multiple_of(STEP) || goes_on();
         let mut voids = Voids::new(size as usize, &first);
         voids.choose(Choice::Clusters);
         for rank in (few..first.len()).rev() {
-            if !goes_on(rank) {
+            if rank.is_multiple_of(STEP) && !goes_on(STEP) {
                 return Ok(None);
             }
             voids.flip();
         }
-        for (rank, pixel) in few_ordered(size as usize, &voids.those(true))
-            .into_iter()
-            .enumerate()
-        {
-            ranks[pixel] = rank as u32;
-        }
+        let lowest = few_ordered(size as usize, &voids.those(true), &mut goes_on);
         voids.choose(Choice::Voids);
         for rank in few..pixels - few {
-            if !goes_on(rank) {
+            if rank.is_multiple_of(STEP) && !goes_on(STEP) {
                 return Ok(None);
             }
             ranks[voids.flip()] = rank as u32;
         }
-        let last = few_ordered(size as usize, &voids.those(false));
-        for (rank, pixel) in (0..pixels).rev().zip(last) {
-            ranks[pixel] = rank as u32;
+        let last = few_ordered(size as usize, &voids.those(false), &mut goes_on);
+        for (rank, pixel) in (0..).zip(lowest).chain((0..size * size).rev().zip(last)) {
+            ranks[pixel] = rank;
         }
-        Ok(Some(Self { size, ranks }))
+        Ok(goes_on(0).then_some(Self { size, ranks }))
+    }
+
+    /// The number of pixels that turn off and on while a mask of a side is made, and of the few twice more.
+    pub fn steps(size: u32) -> u64 {
+        u64::from(size).pow(2) * 8 / 7
     }
 
     /// A mask whose pixels turn on by ascending keys of their columns and rows, equal ones row by row: to compare other
@@ -224,10 +221,9 @@ impl Mask {
         let pixels = size * size;
         let on = ((level.clamp(0.0, 1.0) * pixels as f64).round() as usize).clamp(1, pixels - 1);
         let share = on as f64 / pixels as f64;
-        let values = self.ranks.iter().map(|&rank| {
-            let is_on = f64::from(u8::from((rank as usize) < on));
-            Complex::new(is_on - share, 0.0)
-        });
+        let is_on = |rank: u32| f64::from(u8::from((rank as usize) < on));
+        let ranks = self.ranks.iter();
+        let values = ranks.map(|&rank| Complex::new(is_on(rank) - share, 0.0));
         let values = of_grid(values.collect(), size, 2);
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
         let scale = pixels as f64 * share * (1.0 - share);

@@ -10,15 +10,19 @@
 /// The push at distance 1. Those of all pixels of a plane together are about 6 times as much, below 2⁶⁴.
 const UNIT: f64 = (1u64 << 60) as f64;
 
-/// The pixels of a square of a side, in an order in which all the first ones are spread.
-pub(super) fn few_ordered(size: usize, pixels: &[usize]) -> Vec<usize> {
-    let pushes = pixels.iter().map(|&pixel| {
+pub(super) type Look<'a> = &'a mut dyn FnMut(usize) -> bool;
+
+/// The pixels of a square of a side, in an order in which all the first ones are spread; fewer if it is stopped.
+pub(super) fn few_ordered(size: usize, pixels: &[usize], goes_on: Look<'_>) -> Vec<usize> {
+    let pushed = pixels.iter().take_while(|_| goes_on(1));
+    let pushes = pushed.map(|&pixel| {
         let others = pixels.iter().filter(|&&other| other != pixel);
         (others.map(|&other| push(size, pixel, other)).sum(), pixel)
     });
     let mut left: Vec<(u64, usize)> = pushes.collect();
     let mut order = vec![];
-    while let Some(most) = (0..left.len()).max_by_key(|&i| left[i]) {
+    let highest = |left: &[(u64, usize)]| (0..left.len()).max_by_key(|&i| left[i]);
+    while let Some(most) = highest(&left).filter(|_| goes_on(1)) {
         let (_, pixel) = left.swap_remove(most);
         for (pushed, other) in &mut left {
             *pushed -= push(size, pixel, *other);
@@ -206,7 +210,7 @@ mod tests {
     fn each_one_is_pushed_most_by_those_before_it() {
         let size = 40;
         let pixels: Vec<usize> = (0..size * size).step_by(37).collect();
-        let order = few_ordered(size, &pixels);
+        let order = few_ordered(size, &pixels, &mut |_| true);
         for count in 1..=order.len() {
             let first = &order[..count];
             let pushed = |pixel: usize| -> u64 {
@@ -226,7 +230,7 @@ mod tests {
         assert_eq!(push(20, 0, 19), 1 << 60);
         assert_eq!(push(20, 21, 19 * 20 + 19), 1 << 54);
         let all: Vec<usize> = (0..400).collect();
-        assert_eq!(few_ordered(20, &all).len(), 400);
+        assert_eq!(few_ordered(20, &all, &mut |_| true).len(), 400);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub(crate) fn sums<const D: usize, T: Send>(
     each: impl Fn([i64; D], Complex<f64>) -> Option<T> + Sync,
 ) -> Vec<T> {
     let grid = Grid::new(set.turns(), weights, modes);
-    let half_done = grid.slabs();
+    let half_done = grid.slabs(&set.stop);
     let undo = undo(modes, grid.size);
     let of_column = |scratch: &mut Vec<Complex<f64>>, column: usize| {
         let bands = half_done.chunks_exact(grid.columns * grid.band);
@@ -47,7 +47,7 @@ pub(crate) fn sums<const D: usize, T: Send>(
         }
         all
     };
-    let columns = (0..grid.columns).into_par_iter();
+    let columns = { (0..grid.columns).into_par_iter() }.filter(|_| !set.stop.is_raised());
     let all: Vec<Vec<T>> = columns.map_init(|| grid.scratch(), of_column).collect();
     all.into_iter().flatten().collect()
 }
@@ -108,9 +108,10 @@ impl<'a, const D: usize> Grid<'a, D> {
     }
 
     /// All slabs, transformed along their own axes: by band, then column, then slab of the band.
-    fn slabs(&self) -> Vec<Complex<f64>> {
+    fn slabs(&self, stop: &strew_core::server::Stop) -> Vec<Complex<f64>> {
         let mut all = vec![Complex::default(); self.columns * self.size];
         let bands = all.par_chunks_mut(self.columns * self.band).enumerate();
+        let bands = bands.filter(|_| !stop.is_raised());
         bands.for_each(|(band, out)| {
             let grid = self.spread(band * self.band);
             for pair in 0..self.band / 2 {

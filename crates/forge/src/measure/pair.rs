@@ -54,12 +54,10 @@ impl Shared {
         let ring = |k: [i64; D]| (size(k) / RING) as usize;
         let mut means = vec![[0.0f64; 3]; ring([modes as i64 + 1; D]) + 1];
         for (k, [a, b]) in &all {
-            let mean = &mut means[ring(*k)];
-            *mean = [
-                mean[0] + a.norm_sqr(),
-                mean[1] + b.norm_sqr(),
-                mean[2] + 1.0,
-            ];
+            let more = [a.norm_sqr(), b.norm_sqr(), 1.0];
+            for (sum, more) in means[ring(*k)].iter_mut().zip(more) {
+                *sum += more;
+            }
         }
         let (mut shared, mut own) = (0.0, [0.0; 2]);
         for (k, [a, b]) in &all {

@@ -5,17 +5,19 @@ use std::ops::Range;
 use strew_core::{
     Error, Map, Pattern, PointSet, Region, Table,
     pattern::{Axis, Class, IndexOrigin},
+    server::Stop,
     table::to_grid_units,
 };
 
 use crate::numeric::SplitMix;
 
 /// The points of a square, or of a cube, at unit density: one period of a set that repeats, or a window of an unbounded one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Sample<const D: usize = 2> {
     side: f64,
     points: Vec<[f64; D]>,
     is_periodic: bool,
+    pub(super) stop: Stop,
 }
 
 /// The side of a square, or of a cube, of some volume.
@@ -50,7 +52,13 @@ impl<const D: usize> Sample<D> {
             side,
             points,
             is_periodic,
+            stop: Stop::NEVER,
         }
+    }
+
+    /// This set, measured until a flag is raised: the results are meaningless then.
+    pub fn until(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// The side of the square or cube, in mean spacings.
@@ -63,10 +71,10 @@ impl<const D: usize> Sample<D> {
         self.is_periodic
     }
 
-    /// Whether all is there within `margin` of a point: on a torus always, in a window away from its edge.
+    /// Whether a point is measured, of which all is there within `margin`: on a torus always, in a window away from its edge.
     pub(super) fn is_inner(&self, margin: f64, p: &[f64; D]) -> bool {
         let inner = margin..self.side - margin;
-        self.is_periodic || p.iter().all(|v| inner.contains(v))
+        !self.stop.is_raised() && (self.is_periodic || p.iter().all(|v| inner.contains(v)))
     }
 
     /// The points, in mean spacings.
@@ -82,11 +90,10 @@ impl<const D: usize> Sample<D> {
     /// The points in units of the side, within [0, 1).
     pub(crate) fn turns(&self) -> Vec<[f64; D]> {
         let turns = self.points.iter().map(|p| p.map(|v| v / self.side));
+        let most = 1.0 - f64::EPSILON;
         match self.is_periodic {
             true => turns.map(|p| p.map(|v| wrap(v, 1.0))).collect(),
-            false => turns
-                .map(|p| p.map(|v| v.min(1.0 - f64::EPSILON)))
-                .collect(),
+            false => turns.map(|p| p.map(|v| v.min(most))).collect(),
         }
     }
 }
@@ -113,13 +120,8 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
         y: random.next_u64(),
     };
     let pattern = Pattern::with_origin(map.alpha(), origin);
-    let longest = table
-        .displacements()
-        .iter()
-        .flatten()
-        .map(|v| v.abs())
-        .max();
-    let margin = to_grid_units(longest.unwrap_or(0)).ceil() as i64 + 1;
+    let lengths = table.displacements().iter().flatten().map(|v| v.abs());
+    let margin = to_grid_units(lengths.max().unwrap_or(0)).ceil() as i64 + 1;
     let range = -margin..side.ceil() as i64 + margin;
 
     let mut found = Vec::with_capacity(points as usize + points as usize / 8);

@@ -130,11 +130,8 @@ impl Spectrum {
     /// Returns the rings of width `width` in ν, or one mode if that is wider, from ν = 0 outwards
     /// up to the last whole one. Rings without modes are left out.
     pub fn rings(&self, width: f64) -> Vec<Ring> {
-        rings_of(
-            self.half_plane(),
-            width.max(self.finest_ring()),
-            self.nu_max(),
-        )
+        let width = width.max(self.finest_ring());
+        rings_of(self.half_plane(), width, self.nu_max())
     }
 
     /// Returns the median anisotropy of the rings of each of the [`BANDS`], in dB, as far as they are

@@ -40,12 +40,12 @@ pub(super) fn moved(
     let kinds = parts(table, mix);
     let energy = Together::new(table, &shares, &kinds);
     let mut descent = Descent::new(energy, steps, RATE);
-    let mut state = State::start(moves_of(table));
+    let mut state = State::start(moves_of(table).into_flattened());
     if !work_off(&mut descent, &mut state, meter, &mut |_| {}) {
         return None;
     }
-    let (mut moves, ground) = (state.moves, &descent.objective.ground);
-    clear(ground, &kinds, &shares, &mut moves, FLOOR, ROUNDS);
+    let (moves, ground) = (state.moves.as_chunks_mut().0, &descent.objective.ground);
+    clear(ground, &kinds, &shares, moves, FLOOR, ROUNDS);
     let unit = table.alpha().set_side_f64() / f64::from(1u32 << 20);
     let fixed = |move_: &[f64; 2]| move_.map(|v| (v / unit).round() as i32);
     Some(moves.iter().map(fixed).collect())

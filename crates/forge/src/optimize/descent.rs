@@ -1,6 +1,6 @@
 //! Gradient descent with momentum: what it lowers, and its random start.
 
-use crate::{ForgeError, checkpoint::State, numeric::SplitMix, watch::Phase};
+use crate::{ForgeError, State, checkpoint::vectors, numeric::SplitMix, watch::Phase};
 
 /// Returns a vector for each block, uniformly random in a square or cube of half-width `jitter`.
 ///
@@ -93,7 +93,7 @@ impl<O: Objective> Descent<O> {
 }
 
 /// Takes a step, given the energy and its gradient where it was evaluated.
-fn step(state: &mut State<2>, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
+fn step(state: &mut State, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
     // The energy of the best moves; that of the last evaluation, infinite before the first and after a restart; the steps since
     // the momentum was last dropped; and the current rate over the first one.
     let [least, last, age, slowing] = &mut state.numbers;
@@ -118,15 +118,15 @@ fn step(state: &mut State<2>, first_rate: f64, energy: f64, gradient: &[[f64; 2]
     let mut uphill = 0.0;
     *age += 1.0;
     let momentum = *age / (*age + 3.0);
+    let slopes = gradient.as_flattened().iter();
+    let masses = masses.iter().flat_map(|mass| [mass; 2]);
     let places = at.iter_mut().zip(&mut *ahead);
-    for (((at, ahead), slope), mass) in places.zip(gradient).zip(masses) {
-        for axis in 0..2 {
-            let next = ahead[axis] - rate * slope[axis];
-            let by = next - at[axis];
-            uphill += mass * slope[axis] * by;
-            at[axis] = next;
-            ahead[axis] = next + momentum * by;
-        }
+    for (((at, ahead), slope), mass) in places.zip(slopes).zip(masses) {
+        let next = *ahead - rate * slope;
+        let by = next - *at;
+        uphill += mass * slope * by;
+        *at = next;
+        *ahead = next + momentum * by;
     }
     if uphill > 0.0 {
         *age = 0.0;
@@ -136,7 +136,7 @@ fn step(state: &mut State<2>, first_rate: f64, energy: f64, gradient: &[[f64; 2]
 
 /// The lists of a state are the moves after the last step, without momentum and with it, where the next evaluation takes
 /// place, and those that the objective built its lists for; see [`Objective::prepared_for`].
-impl<O: Objective> Phase<State<2>> for Descent<O> {
+impl<O: Objective> Phase for Descent<O> {
     fn steps(&self) -> u32 {
         self.steps
     }
@@ -145,31 +145,31 @@ impl<O: Objective> Phase<State<2>> for Descent<O> {
         format!("{} steps at rate {}", self.steps, self.rate)
     }
 
-    fn begin(&mut self, state: &mut State<2>) {
+    fn begin(&mut self, state: &mut State) {
         let moves = &state.moves;
-        self.gradient = vec![[0.0; 2]; moves.len()];
+        self.gradient = vec![[0.0; 2]; moves.len() / 2];
         if state.lists[0].is_empty() {
             state.numbers = [f64::INFINITY, f64::INFINITY, 0.0, 1.0];
             state.lists = [moves.clone(), moves.clone(), Vec::new()];
         }
         if !state.lists[2].is_empty() {
-            self.objective.prepare_for(&state.lists[2]);
+            self.objective.prepare_for(vectors(&state.lists[2]));
         }
     }
 
-    fn step(&mut self, state: &mut State<2>) -> f64 {
-        let energy = self.objective.evaluate(&state.lists[1], &mut self.gradient);
+    fn step(&mut self, state: &mut State) -> f64 {
+        let at = vectors(&state.lists[1]);
+        let energy = self.objective.evaluate(at, &mut self.gradient);
         let masses = self.objective.masses();
         step(state, self.rate, energy, &self.gradient, masses);
         energy
     }
 
-    fn complete(&self, state: &mut State<2>) {
-        let prepared_for = self.objective.prepared_for();
-        prepared_for.clone_into(&mut state.lists[2]);
+    fn complete(&self, state: &mut State) {
+        state.lists[2] = self.objective.prepared_for().as_flattened().to_vec();
     }
 
-    fn end(&self, state: State<2>) -> Result<State<2>, ForgeError> {
+    fn end(&self, state: State) -> Result<State, ForgeError> {
         Ok(State::start(state.moves))
     }
 
@@ -203,9 +203,9 @@ mod tests {
         }
     }
 
-    fn run(steps: u32, rate: f64, watch: &dyn Watch) -> State<2> {
+    fn run(steps: u32, rate: f64, watch: &dyn Watch) -> State {
         let mut meter = Meter::new(watch, Stage::Optimizing, steps);
-        let mut state = State::start(vec![[5.0, 5.0]; 2]);
+        let mut state = State::start(vec![5.0; 4]);
         let mut descent = Descent::new(Valley([0.25, 0.75]), steps, rate);
         work_off(&mut descent, &mut state, &mut meter, &mut |_| {});
         state

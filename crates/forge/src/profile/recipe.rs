@@ -3,7 +3,6 @@
 use std::slice;
 
 use crate::{
-    checkpoint::State,
     curve::Target,
     energy::{Gaussian, Guard, Lloyd},
     judge::Bound,
@@ -115,7 +114,7 @@ pub struct Push {
 }
 
 /// A descent.
-type BoxedPhase = Box<dyn Phase<State<2>>>;
+type BoxedPhase = Box<dyn Phase>;
 
 /// The descent of an objective.
 fn phase(objective: impl Objective + 'static, steps: u32, rate: f64) -> BoxedPhase {

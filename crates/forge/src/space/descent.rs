@@ -4,7 +4,7 @@
 use strew_core::Map;
 
 use super::pairs::{Blocks, Gaussian, Pairs};
-use crate::{ForgeError, checkpoint::State, watch::Phase};
+use crate::{ForgeError, State, checkpoint::vectors, watch::Phase};
 
 /// How the steps of a phase move blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +34,9 @@ pub(super) struct SpacePhase<'a> {
 }
 
 /// The vectors as the energy takes them.
-fn single(moves: &[[f64; 3]]) -> Vec<[f32; 3]> {
-    moves.iter().map(|v| v.map(|v| v as f32)).collect()
+fn single(moves: &[f64]) -> Vec<[f32; 3]> {
+    let moves = vectors::<3>(moves).iter();
+    moves.map(|v| v.map(|v| v as f32)).collect()
 }
 
 impl<'a> SpacePhase<'a> {
@@ -56,10 +57,10 @@ impl<'a> SpacePhase<'a> {
     }
 
     /// Takes a step down an energy. Returns the energy before it, per point.
-    fn descend(&mut self, gaussian: Gaussian, state: &mut State<3>) -> f64 {
+    fn descend(&mut self, gaussian: Gaussian, state: &mut State) -> f64 {
         let moves = single(&state.moves);
         let [momentum, listed, _] = &mut state.lists;
-        let is_near = listed.len() == moves.len()
+        let is_near = listed.len() == state.moves.len()
             && moves.iter().zip(single(listed)).all(|(a, b)| {
                 let squared: f32 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
                 squared < (0.5 * SKIN * 0.5 * SKIN) as f32
@@ -70,20 +71,17 @@ impl<'a> SpacePhase<'a> {
         }
         let energy = gaussian.evaluate(&self.blocks, &self.pairs, &moves, &mut self.forces);
         let rate = self.rate(gaussian, state.steps);
-        momentum.resize(moves.len(), [0.0; 3]);
+        momentum.resize(state.moves.len(), 0.0);
         let all = state.moves.iter_mut().zip(momentum);
-        for ((at, momentum), force) in all.zip(&self.forces) {
-            for axis in 0..3 {
-                momentum[axis] = MOMENTUM * momentum[axis] + force[axis];
-                let by = (rate * momentum[axis]).clamp(-CLIP, CLIP);
-                momentum[axis] = by / rate;
-                at[axis] += by;
-            }
+        for ((at, momentum), force) in all.zip(self.forces.as_flattened()) {
+            *momentum = MOMENTUM * *momentum + force;
+            let by = (rate * *momentum).clamp(-CLIP, CLIP);
+            *momentum = by / rate;
+            *at += by;
         }
-        center(&self.blocks.shares, &mut state.moves);
-        for v in &mut state.moves {
-            shorten(v, self.blocks.longest);
-        }
+        let (moves, _) = state.moves.as_chunks_mut();
+        center(&self.blocks.shares, moves);
+        shorten(moves, self.blocks.longest);
         energy
     }
 
@@ -102,7 +100,7 @@ impl<'a> SpacePhase<'a> {
 
 /// The lists of a state are the momentum of a descent, the vectors that its pairs were listed for, because the order of sums
 /// follows the lists, and of pushes the vectors with the greatest least distance so far, which is a number of the state.
-impl Phase<State<3>> for SpacePhase<'_> {
+impl Phase for SpacePhase<'_> {
     fn steps(&self) -> u32 {
         self.steps
     }
@@ -114,8 +112,8 @@ impl Phase<State<3>> for SpacePhase<'_> {
         }
     }
 
-    fn begin(&mut self, state: &mut State<3>) {
-        self.forces = vec![[0.0; 3]; state.moves.len()];
+    fn begin(&mut self, state: &mut State) {
+        self.forces = vec![[0.0; 3]; state.moves.len() / 3];
         let [_, listed, _] = &state.lists;
         if let (Rule::Descent(gaussian), false) = (self.rule, listed.is_empty()) {
             let reach = gaussian.reach() + SKIN;
@@ -123,7 +121,7 @@ impl Phase<State<3>> for SpacePhase<'_> {
         }
     }
 
-    fn step(&mut self, state: &mut State<3>) -> f64 {
+    fn step(&mut self, state: &mut State) -> f64 {
         let value = match self.rule {
             Rule::Descent(gaussian) => self.descend(gaussian, state),
             Rule::Pushes => push(&self.blocks, state, self.steps),
@@ -132,18 +130,19 @@ impl Phase<State<3>> for SpacePhase<'_> {
         value
     }
 
-    fn end(&self, state: State<3>) -> Result<State<3>, ForgeError> {
+    fn end(&self, state: State) -> Result<State, ForgeError> {
         let [_, _, best] = state.lists;
         let mut moves = if best.is_empty() { state.moves } else { best };
         if let Some([coarse, fine]) = self.finer {
             // The vectors of the coarse map for the blocks of the finer one.
             let (fine, parents) = coarse.refine(fine.radius())?;
             let (n, m) = (fine.intervals(), coarse.intervals());
+            let coarse = vectors::<3>(&moves);
             let parent = |b: usize| {
                 let [i, j, k] = [b % n, b / n % n, b / (n * n)].map(|i| parents[i]);
-                moves[(k * m + j) * m + i]
+                coarse[(k * m + j) * m + i]
             };
-            moves = (0..n.pow(3)).map(parent).collect();
+            moves = (0..n.pow(3)).flat_map(parent).collect();
         }
         Ok(State::start(moves))
     }
@@ -168,11 +167,13 @@ fn center(shares: &[f64], moves: &mut [[f64; 3]]) {
     }
 }
 
-/// Shortens a vector that is too long.
-fn shorten(v: &mut [f64; 3], longest: f64) {
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    if length > longest {
-        *v = v.map(|v| v * (longest / length));
+/// Shortens vectors that are too long.
+fn shorten(moves: &mut [[f64; 3]], longest: f64) {
+    for v in moves {
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        if length > longest {
+            *v = v.map(|v| v * (longest / length));
+        }
     }
 }
 
@@ -180,7 +181,7 @@ fn shorten(v: &mut [f64; 3], longest: f64) {
 const TARGETS: [f64; 2] = [0.853, 0.965];
 
 /// Moves blocks apart, one step of `steps`. Returns the least distance before it, in mean spacings.
-fn push(blocks: &Blocks, state: &mut State<3>, steps: u32) -> f64 {
+fn push(blocks: &Blocks, state: &mut State, steps: u32) -> f64 {
     let part = f64::from(state.steps) / f64::from(steps.max(2) - 1);
     let target = TARGETS[0] + (TARGETS[1] - TARGETS[0]) * part;
     let places = single(&state.moves);
@@ -207,12 +208,13 @@ fn push(blocks: &Blocks, state: &mut State<3>, steps: u32) -> f64 {
     if least > state.numbers[0] {
         (state.numbers[0], state.lists[2]) = (least, state.moves.clone());
     }
-    for (v, (sum, weight)) in state.moves.iter_mut().zip(&sums) {
+    let (moves, _) = state.moves.as_chunks_mut::<3>();
+    for (v, (sum, weight)) in moves.iter_mut().zip(&sums) {
         if *weight > 0.0 {
             for axis in 0..3 {
                 v[axis] += 0.55 * sum[axis] / weight;
             }
-            shorten(v, blocks.longest);
+            shorten(std::slice::from_mut(v), blocks.longest);
         }
     }
     least

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     ForgeError, MAX_STEPS, Meter,
-    checkpoint::State,
+    checkpoint::{State, vectors},
     forge::{Task, Work},
     judge::{Bound, Complaint, Figure, complaints as missed},
     optimize::jitter,
@@ -152,30 +152,25 @@ impl SpacePlan {
 }
 
 impl Work for SpacePlan {
-    type State = State<3>;
     type Table = Table;
+    const AXES: usize = 3;
 
     fn identity(&self) -> String {
-        let SpaceJob {
-            profile,
-            alpha,
-            radius,
-            seed,
-            ..
-        } = self.job;
-        let (profile, longest) = (profile.name(), longest(alpha));
+        let SpaceJob { alpha, radius, .. } = self.job;
+        let (profile, seed) = (self.job.profile.name(), self.job.seed);
+        let longest = longest(alpha);
         format!(
             "points = in space\nprofile = {profile}\nalpha = {alpha}\nR = {radius}\nseed = {seed}\n\
              jitter = {JITTER}\nlongest = {longest}\n"
         )
     }
 
-    fn start(&self) -> State<3> {
+    fn start(&self) -> State {
         let blocks = self.maps[0].intervals().pow(3);
-        State::start(jitter(blocks, JITTER, self.job.seed))
+        State::start(jitter::<3>(blocks, JITTER, self.job.seed).into_flattened())
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<State<3>> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase + '_>> {
         let phases = self.job.phases().into_iter().enumerate();
         let phase = |(number, (rule, steps)): (usize, (Rule, u32))| {
             let finer = (number == 0).then_some(&self.maps);
@@ -187,7 +182,7 @@ impl Work for SpacePlan {
 
     fn table(
         &self,
-        state: &State<3>,
+        state: &State,
         [steps, all]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
@@ -212,7 +207,8 @@ impl Work for SpacePlan {
         };
         let units = 4096.0 / map.alpha().set_side_f64();
         let round = |v: f64| (v * units).round().clamp(-32_767.0, 32_767.0) as i16;
-        let vectors = state.moves.iter().map(|v| v.map(round)).collect();
+        let moves = vectors::<3>(&state.moves).iter();
+        let vectors = moves.map(|v| v.map(round)).collect();
         let name = job.profile.name();
         Ok(Table::new(map.clone(), name, vectors, provenance, None)?)
     }
@@ -260,11 +256,7 @@ fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
     let of = |figures: &Figures| {
         let is_window = figures.subject.starts_with("window");
         let is_seeded = is_window && figures.subject != "window seed 0";
-        let mut bounds = if is_seeded {
-            seeded.clone()
-        } else {
-            plain.clone()
-        };
+        let mut bounds = if is_seeded { &seeded } else { &plain }.clone();
         bounds.extend(local.iter().filter(|_| is_window));
         missed(&bounds, std::slice::from_ref(figures))
     };

@@ -7,6 +7,8 @@ use strew_forge::{
     measure::{BANDS, Sample},
 };
 
+use super::Work;
+
 /// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
 pub const MOST_POINTS: u128 = 4_000_000;
 /// The smallest.
@@ -23,7 +25,8 @@ pub struct Measured {
     pub resolution: Resolution,
 }
 
-pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured) -> Result<Report, Error> {
+/// Measures points, as the work of a call, which may be stopped.
+pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured, work: &Work) -> Result<Report, Error> {
     let [min_x, min_y, max_x, max_y] = of.bbox;
     let (width, height) = (max_x - min_x, max_y - min_y);
     let is_square = width > 0.0 && (width / height - 1.0).abs() <= 1e-9;
@@ -64,16 +67,13 @@ pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured) -> Result<Report, Error
         let density = of.density.unwrap_or(count as f64 / (width * height));
         Sample::window(width, density, points)
     };
-    Ok(Report::of(name, false, &set, of.resolution))
+    let set = set.until(work.stop.clone());
+    work.finished(Report::of(name, false, &set, of.resolution))
 }
 
 pub fn document(report: &Report) -> Value {
-    let figures: Map<String, Value> = report
-        .figures
-        .values
-        .iter()
-        .map(|(name, value)| (name.clone(), json!(value)))
-        .collect();
+    let figures = report.figures.values.iter();
+    let figures = figures.map(|(name, value)| (name.clone(), json!(value)));
     let rings: Vec<Value> = report
         .rings
         .iter()
@@ -88,7 +88,7 @@ pub fn document(report: &Report) -> Value {
         "subject": report.figures.subject,
         "made_on_it": report.figures.seen,
         "points": report.figures.points,
-        "figures": figures,
+        "figures": figures.collect::<Map<_, _>>(),
         "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": rings },
         "anisotropy": { "columns": ["from", "to", "db"], "bands": bands },
         "rdf": { "columns": ["distance", "g"], "bins": report.rdf.bins },

@@ -329,7 +329,7 @@ fn points_of_a_square_are_measured() {
         is_periodic: false,
         resolution: strew_forge::Resolution::default(),
     };
-    let report = measure(points.clone(), &of).expect("a square");
+    let report = measure(points.clone(), &of, library.work()).expect("a square");
     let document = measured::document(&report);
     assert_eq!(document["points"], points.len());
     let oblong = Measured {
@@ -341,7 +341,7 @@ fn points_of_a_square_are_measured() {
         ..of
     };
     for (of, field) in [(oblong, "bbox"), (far, "points")] {
-        let refused = measure(points.clone(), &of).expect_err(field);
+        let refused = measure(points.clone(), &of, library.work()).expect_err(field);
         assert_eq!(refused.faults()[0].field, field);
     }
 }

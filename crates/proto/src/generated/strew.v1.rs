@@ -1094,13 +1094,6 @@ pub struct StreamSummary {
     #[prost(string, tag = "2")]
     pub next_cursor: ::prost::alloc::string::String,
 }
-/// Asks how many points a query has.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct CountPointsRequest {
-    /// The query; its encoding does not matter. Required.
-    #[prost(message, optional, tag = "1")]
-    pub query: ::core::option::Option<StreamPointsRequest>,
-}
 /// The number of points of a query.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct CountPointsResponse {
@@ -1114,18 +1107,18 @@ pub struct CountPointsResponse {
     #[prost(message, optional, tag = "3")]
     pub query: ::core::option::Option<ResolvedQuery>,
 }
-/// Asks for a query in parts.
+/// Asks for a request in parts.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct SplitPointsRequest {
-    /// The query. Required.
+    /// The request. Required.
     #[prost(message, optional, tag = "1")]
-    pub query: ::core::option::Option<StreamPointsRequest>,
+    pub request: ::core::option::Option<StreamPointsRequest>,
     /// The number of parts, 1 to 10000. Required. All requests together must not take more than 4 MiB, what
     /// clients accept in one message by default.
     #[prost(uint32, tag = "2")]
     pub parts: u32,
 }
-/// A query in parts.
+/// A request in parts.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct SplitPointsResponse {
     /// The number of points of the query; 2^64 - 1 if there are more.
@@ -1135,7 +1128,7 @@ pub struct SplitPointsResponse {
     #[prost(message, repeated, tag = "2")]
     pub parts: ::prost::alloc::vec::Vec<Part>,
 }
-/// A part of a query.
+/// A part of a request.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct Part {
     /// The number of points of the part.
@@ -1494,11 +1487,11 @@ pub mod point_service_client {
                 .insert(GrpcMethod::new("strew.v1.PointService", "StreamPoints"));
             self.inner.server_streaming(req, path, codec).await
         }
-        /// Counts the points of a query, exactly, without making them: at once for boxes without warp,
+        /// Counts the points of a request, exactly, without making them: at once for boxes without warp,
         /// whatever they hold, else in time proportional to the lattice rows.
         pub async fn count_points(
             &mut self,
-            request: impl tonic::IntoRequest<super::CountPointsRequest>,
+            request: impl tonic::IntoRequest<super::StreamPointsRequest>,
         ) -> std::result::Result<
             tonic::Response<super::CountPointsResponse>,
             tonic::Status,

@@ -244,7 +244,7 @@ impl Service {
         caller: &Caller,
         query: &ArrangementQuery,
     ) -> Result<(Permit, Listing), Error> {
-        let permit = self.admit(caller, None)?;
+        let permit = self.admit(caller, 0)?;
         let placed = match &query.set {
             Some(set) => Some(self.place(caller, set.clone()).await?),
             None => None,

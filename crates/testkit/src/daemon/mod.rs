@@ -112,11 +112,8 @@ pub struct NotReady {
 impl fmt::Display for NotReady {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { line, status, log } = self;
-        write!(f, "the daemon is not ready: ")?;
-        match status {
-            Ok(status) => write!(f, "{status}")?,
-            Err(error) => write!(f, "{error}")?,
-        }
+        let status = { status.as_ref() }.map_or_else(ToString::to_string, ToString::to_string);
+        write!(f, "the daemon is not ready: {status}")?;
         if let Some(line) = line {
             write!(f, "; it printed `{line}`")?;
         }
@@ -228,9 +225,8 @@ impl Daemon {
     /// A figure of `/proc/PID/status` in KiB, such as `VmRSS`; `None` where there is no `/proc`.
     pub fn memory_kib(&self, figure: &str) -> Option<u64> {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.pid())).ok()?;
-        let value = status
-            .lines()
-            .find_map(|line| line.strip_prefix(figure)?.strip_prefix(':'))?;
+        let mut lines = status.lines();
+        let value = lines.find_map(|line| line.strip_prefix(figure)?.strip_prefix(':'))?;
         value.trim().strip_suffix(" kB")?.parse().ok()
     }
 
@@ -242,29 +238,25 @@ impl Daemon {
 
     /// The processor time used so far by the threads whose names begin with `name`, in clock ticks.
     pub fn cpu_ticks_of_threads(&self, name: &str) -> u64 {
-        let threads = std::fs::read_dir(format!("/proc/{}/task", self.pid())).expect("Linux");
-        let stats = threads.filter_map(|thread| {
-            // A thread may have ended meanwhile.
-            std::fs::read_to_string(thread.ok()?.path().join("stat")).ok()
-        });
-        stats
-            .filter_map(|stat| {
-                let (thread, ticks) = ticks(&stat);
-                thread.starts_with(name).then_some(ticks)
-            })
-            .sum()
+        let named = |stat: &String| ticks(stat).0.starts_with(name);
+        let of_them = self.threads().filter(named);
+        of_them.map(|stat| ticks(&stat).1).sum()
     }
 
     /// Whether a thread runs, or waits for a processor.
     pub fn is_at_work(&self) -> bool {
-        let threads = std::fs::read_dir(format!("/proc/{}/task", self.pid())).expect("Linux");
-        let mut stats = threads
-            .filter_map(|thread| std::fs::read_to_string(thread.ok()?.path().join("stat")).ok());
         // The state follows the name, which is in parentheses.
-        stats.any(|stat| {
+        let runs = |stat: String| {
             stat.rsplit_once(") ")
-                .is_some_and(|(_, rest)| rest.starts_with('R'))
-        })
+                .is_some_and(|(_, at)| at.starts_with('R'))
+        };
+        self.threads().any(runs)
+    }
+
+    /// The `stat` of each thread. One may have ended meanwhile.
+    fn threads(&self) -> impl Iterator<Item = String> {
+        let threads = std::fs::read_dir(format!("/proc/{}/task", self.pid())).expect("Linux");
+        threads.filter_map(|thread| std::fs::read_to_string(thread.ok()?.path().join("stat")).ok())
     }
 
     pub fn open_files(&self) -> usize {
@@ -330,14 +322,14 @@ mod tests {
     fn a_daemon_that_does_not_start_shows_its_status_and_its_log() {
         let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().expect("a folder");
-        let script = "echo the port is taken >&2; exit 3";
-        let started = Launcher::new(program(folder.path(), script)).start();
-        let text = started.err().expect("not ready").to_string();
+        let not_ready = |script: &str| {
+            let started = Launcher::new(program(folder.path(), script)).start();
+            started.err().expect("not ready").to_string()
+        };
+        let text = not_ready("echo the port is taken >&2; exit 3");
         assert!(text.contains("exit status: 3"), "{text}");
         assert!(text.contains("the port is taken"), "{text}");
-        let script = "echo nonsense; exec sleep 600";
-        let started = Launcher::new(program(folder.path(), script)).start();
-        let text = started.err().expect("not ready").to_string();
+        let text = not_ready("echo nonsense; exec sleep 600");
         assert!(text.contains("`nonsense`"), "{text}");
     }
 }

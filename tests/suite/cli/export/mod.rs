@@ -17,7 +17,7 @@ use strew_testkit::{process::Running, wait::until};
 use super::{printed, refused, settings};
 use crate::support::{
     clients,
-    command::{errors, run},
+    command::{assert_says, errors, run},
     daemon::strew,
     disk::SmallDisk,
     proxy::{Proxy, nginx},
@@ -93,7 +93,7 @@ fn kill_when(arguments: &[&str], what: &str, there: impl Fn() -> bool) {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program runs");
-    until(what, || there().then_some(()));
+    until(what, there);
     let _ = child.kill();
     let _ = child.wait();
 }
@@ -229,18 +229,12 @@ fn an_interrupt_ends_it_in_good_order() {
     let child = Running::start(command.stderr(Stdio::piped()));
     let journal = out.join(".partial/journal");
     until("some chunks are there", || {
-        fs::metadata(&journal)
-            .is_ok_and(|file| file.len() > 3000)
-            .then_some(())
+        fs::metadata(&journal).is_ok_and(|file| file.len() > 3000)
     });
     child.signal("INT");
     let output = child.end();
     assert_eq!(output.status.code(), Some(130));
-    assert!(
-        errors(&output).contains("resumes there"),
-        "{}",
-        errors(&output)
-    );
+    assert_says(&output, "resumes there");
 }
 
 #[test]
@@ -303,7 +297,7 @@ fn a_folder_goes_on_once_there_is_room() {
     let child = Running::start(command.stderr(Stdio::piped()));
     until("some chunks are there", || {
         // 33 chunks of 32 KiB.
-        (fs::metadata(&journal).ok()?.len() > 3000).then_some(())
+        fs::metadata(&journal).is_ok_and(|file| file.len() > 3000)
     });
     // It must not write on while its disk shrinks.
     child.signal("STOP");
