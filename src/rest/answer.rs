@@ -264,17 +264,18 @@ async fn part(
     tag: Vec<u8>,
 ) -> Result<Response, Error> {
     let (caller, block_bytes) = (&context.caller, service.limits().block_bytes);
-    let all = || points(service, context, query.clone(), (chosen, output.clone()));
     let open = async |query: Box<Query>| {
         let (permit, planned) = service.open(caller, query, Some(&output)).await?;
         Ok::<_, Error>((permit, planned.answer(&output, block_bytes)?))
     };
     let planned = service.plan(caller, query.clone()).await?;
     let whole = planned.answer(&output, block_bytes)?;
+    let mut headers = describe(&planned, &whole, chosen)?;
     let index = match whole.index() {
         Some(index) => Some(Arc::new(index)),
         None if is_whole(&planned, chosen) => {
-            caller.charge(considered(&planned))?;
+            // A head returns no points, and costs none.
+            caller.charge(range.as_ref().map_or(0, |_| considered(&planned)))?;
             let answer = planned.answer(&output, block_bytes)?;
             Some(Arc::new(Index::whole(service.at_once(answer)?)))
         }
@@ -283,7 +284,6 @@ async fn part(
         }
         None => None,
     };
-    let mut headers = describe(&planned, &whole, chosen)?;
     let Some(range) = range else {
         if let Some(index) = index {
             headers.insert(header::CONTENT_LENGTH, index.size().into());
@@ -293,7 +293,7 @@ async fn part(
         return Ok(response);
     };
     let Some(index) = index else {
-        return all().await;
+        return points(service, context, query, (chosen, output)).await;
     };
     let size = index.size();
     let Some(part) = range.within(size) else {
@@ -310,7 +310,7 @@ async fn part(
         let (permit, made) = open(some).await?;
         if made.legend() != whole.legend() || made.origin() != whole.origin() {
             drop(permit);
-            return all().await;
+            return points(service, context, query, (chosen, output)).await;
         }
         let head = made.head().map_or(0, |head| head.len() as u64);
         let blocks = service.blocks(permit, made);
